@@ -5,6 +5,7 @@ from __future__ import annotations
 import itertools
 from collections import Counter, deque
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from functools import cache
 from typing import Any, NamedTuple
 
 from coursework.course.course import Course, opened
@@ -168,11 +169,15 @@ def _marked_chunks(
     )
 
 
-_known: dict[str, Variant] = {}  #: of this process, where it marks for another
+@cache
+def _known(root: str) -> dict[str, Variant]:
+    """Return the variants of a course that this process knows, where it marks for another: a worker of a cluster serves
+    several courses, and a corrected one has the same records."""
+    return {}
 
 
 def _mark_elsewhere(root: str, chunk: list[_SheetJob], rules: Rules | None) -> list[list[tuple] | str]:
-    return _mark_chunk(opened(root, Variant), chunk, rules, _known)
+    return _mark_chunk(opened(root, Variant), chunk, rules, _known(root))
 
 
 def _mark_chunk(
@@ -180,9 +185,8 @@ def _mark_chunk(
 ) -> list[list[tuple] | str]:
     """Return the lines of each sheet, or the reason for which it cannot be marked. Variants that are ``known`` from
     the chunks before keep the keys that were computed for them."""
-    names = {
-        id(job.record): f"{job.record} {rules}" for job in chunk
-    }  # sheets of one variant share its record
+    # Sheets of one variant share its record.
+    names = {id(job.record): f"{job.record} {rules}" for job in chunk}
     variants = {name: known[name] for name in names.values() if name in known}
     new: dict[str, list[Variant]] = {}
     for job in chunk:
