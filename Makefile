@@ -36,7 +36,7 @@ SITE ?= --demo
 site: $(VENV)/ready-site  ## The site on this machine, opened in the browser
 	$(BIN)/coursework serve --open $(SITE)
 
-PYTEST := python -m pytest -n auto -q
+PYTEST := python -m pytest -n auto --dist worksteal -q
 
 # Of each sweep over seeds, exercises or languages the first few: see tests/sweeps.py.
 test: $(VENV)/ready-test style  ## Every promise on a handful of exercises and on those that differ from the main branch

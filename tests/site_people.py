@@ -91,9 +91,16 @@ class Browser(Client):
     def __init__(self, app, lang):
         super().__init__(app, base_url=HOME, headers={"accept-language": lang})
 
+    _seal = ("", "")
+
     @property
     def seal(self):
-        return re.search(r'X-Seal": "([0-9a-f]{64})"', self.get("/no-such-page").text)[1]
+        """The CSRF token of the forms, from a page; it stays while the cookie does."""
+        cookie = self.cookies.get(COOKIE, "")
+        if not cookie or self._seal[0] != cookie:
+            found = re.search(r'X-Seal": "([0-9a-f]{64})"', self.get("/no-such-page").text)[1]
+            self._seal = self.cookies.get(COOKIE, ""), found
+        return self._seal[1]
 
     def fill(self, address, data=None, **more):
         return self.post(address, data={"_seal": self.seal, **(data or {})}, **more)

@@ -33,19 +33,31 @@ class Allowances:
     def spend(self, key: Hashable, amount: float) -> None:
         """Count an amount as spent, even if it exceeds the rest."""
         with self._lock:
-            now = self._clock()
-            self._spent[key] = self._now(key, now) + amount, now
-            if len(self._spent) > _MOST_KEYS:
-                self._spent = {
-                    other_key: (left, now)
-                    for other_key in self._spent
-                    if (left := self._now(other_key, now)) > 0
-                }
+            self._spend(key, amount, self._clock())
 
     def wait(self, key: Hashable) -> int:
         """Return the seconds until a key may spend again; 0 if it may now."""
         with self._lock:
-            over = self._now(key, self._clock()) - self._most
+            return self._wait(self._now(key, self._clock()) - self._most)
+
+    def take(self, key: Hashable) -> int:
+        """Spend 1 if a key has it, and return 0; else return the seconds until it has, and spend nothing."""
+        with self._lock:
+            now = self._clock()
+            over = self._now(key, now) + 1.0 - self._most
+            if over > 0:
+                return self._wait(over)
+            self._spend(key, 1.0, now)
+        return 0
+
+    def _spend(self, key: Hashable, amount: float, now: float) -> None:
+        self._spent[key] = self._now(key, now) + amount, now
+        if len(self._spent) > _MOST_KEYS:
+            self._spent = {
+                other_key: (left, now) for other_key in self._spent if (left := self._now(other_key, now)) > 0
+            }
+
+    def _wait(self, over: float) -> int:
         return max(1, math.ceil(over / self._back)) if over >= 0 else 0
 
     def _now(self, key: Hashable, now: float) -> float:

@@ -1,10 +1,13 @@
-"""The types that the package states agree. As a test the check shares the processors with the others."""
+"""The types that the package states agree."""
 
 import subprocess
 import sys
 from pathlib import Path
 
+import pytest
 
+
+@pytest.mark.e2e
 def test_the_types_of_the_package_agree():
     done = subprocess.run(
         [sys.executable, "-m", "mypy"],

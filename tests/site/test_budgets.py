@@ -23,7 +23,7 @@ from coursework.database.permissions import is_of_staff
 from coursework.gradebook.submissions import read_rows
 from coursework.site.application import ROUTES
 from coursework.site.frame.budgets import ANSWER_FILE, HAND_IN, KILOBYTE, MEGABYTE, MOST_ROWS
-from coursework.site.frame.limits import ADDRESS, AT_ONCE, BACK, PERSON
+from coursework.site.frame.limits import ADDRESS, AT_ONCE, BACK, PERSON, Rate
 from coursework.site.frame.requests import Response as SiteResponse
 from coursework.site.lti.service import AT_ONCE as LINKS_AT_ONCE
 from coursework.site.lti.service import LARGEST
@@ -194,8 +194,8 @@ def spin(seconds):
 def test_the_documentation_states_the_limits():
     page = (Path(__file__).resolve().parents[2] / "docs/privacy.md").read_text("utf-8")
     rows = re.findall(r"^\| `(\w+)`: [^|]+\| (\d+) ([^|]+) \| (\d+) ([^|]+) \|$", page, re.MULTILINE)
-    spans = {"a minute": "/minute", "in 10 minutes": "/10minutes"}
-    told = {name: (f"{own}{spans[span]}", f"{all_}{spans[of]}") for name, own, span, all_, of in rows}
+    spans = {"a minute": 1, "in 10 minutes": 10}
+    told = {name: ((int(own), spans[span]), (int(all_), spans[of])) for name, own, span, all_, of in rows}
     assert told == {name: (PERSON[name], ADDRESS[name]) for name in PERSON}
     assert f"{AT_ONCE:.0f} seconds of a processor at once, and {BACK} in each second" in page
 
@@ -448,7 +448,7 @@ def test_each_page_of_a_link_is_counted_by_what_it_takes_of_a_processor(linked):
 
 def test_links_that_are_opened_without_end_are_refused(tmp_path, monkeypatch):
     """By an address, where nobody is known yet; who is in is counted by person."""
-    monkeypatch.setitem(ADDRESS, "usual", "6/minute")
+    monkeypatch.setitem(ADDRESS, "usual", Rate(6, 1))
     linked = Linked(tmp_path)
     visitor, _, path = linked.enter()  # a login and a launch
     assert [visitor.browser.get("/lti/login").status_code for _ in range(6)] == [403] * 4 + [429] * 2

@@ -13,11 +13,13 @@ import time
 from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import dataclass
+from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
 from cryptography.hazmat.primitives import serialization
 from cryptography.hazmat.primitives.asymmetric import rsa
+from cryptography.hazmat.primitives.asymmetric.types import PrivateKeyTypes
 from jwt.algorithms import RSAAlgorithm
 
 from coursework.errors import BadInput, nearest
@@ -47,7 +49,7 @@ class SigningKey:
         if os.name == "posix" and self.path.stat().st_mode & 0o077:
             raise BadInput("others may read the private key {file}: chmod 600 {file}", file=self.path)
         try:
-            private_key = serialization.load_pem_private_key(self.path.read_bytes(), None)
+            private_key = _private_key(self.path.read_bytes())
         except (OSError, ValueError, TypeError) as fault:
             raise BadInput(
                 "{file} is no private key: {error}; 'coursework lti keys rotate' makes another",
@@ -155,6 +157,12 @@ class KeyFolder:
                 os.link(part, path)
         finally:
             part.unlink()
+
+
+# To check the primes of a key takes a fifth of a second of a processor.
+@lru_cache(maxsize=8)
+def _private_key(pem: bytes) -> PrivateKeyTypes:
+    return serialization.load_pem_private_key(pem, None)
 
 
 def _jwk(private: rsa.RSAPrivateKey) -> dict[str, Any]:
