@@ -24,8 +24,8 @@ Files = dict[
 def item_content(item: Item, pieces: PagePieces, spelling: QtiSpelling) -> Files:
     """Return the files of a variant of a pool."""
     made = item_file(item, pieces)
-    files = {f"{made.identifier}.xml": compressed(written(made.tree, spelling))}
-    return files | {f"{IMAGES}/{image.name}": compressed(image.data) for image in made.images}
+    files = {f"{made.identifier}.xml": compressed([written(made.tree, spelling)])}
+    return files | {f"{IMAGES}/{image.name}": compressed([image.data]) for image in made.images}
 
 
 def package(pool: Pool, platform: str, spelling: QtiSpelling) -> File:

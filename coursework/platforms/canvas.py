@@ -16,7 +16,7 @@ from coursework.platforms.items import Item, Loss, Pool
 from coursework.platforms.pieces import Image, PagePieces
 from coursework.platforms.platform import Platform
 from coursework.system.writing import File
-from coursework.system.zips import zipped
+from coursework.system.zips import compressed, zipped
 
 _QTI = "http://www.imsglobal.org/xsd/ims_qtiasiv1p2"
 _META = "http://canvas.instructure.com/xsd/cccv1p0"
@@ -53,8 +53,9 @@ class Canvas(Platform):
 
 
 def _package(pool: Pool) -> bytes:
-    quiz = identified("quiz", pool.name, pool.lang)
-    test, images = _test(pool, quiz)
+    quiz, questions = identified("quiz", pool.name, pool.lang), Questions(pool)
+    test = compressed(_test(pool, quiz, questions))
+    images = questions.images
     files = {
         f"{quiz}/{quiz}.xml": test,
         f"{quiz}/assessment_meta.xml": _settings(pool, quiz),
@@ -63,18 +64,22 @@ def _package(pool: Pool) -> bytes:
     return zipped({"imsmanifest.xml": _manifest(quiz, images), **files})
 
 
-def _test(pool: Pool, quiz: str) -> tuple[bytes, list[Image]]:
-    """Return the quiz: a group for each question of each exercise, from which a student gets one."""
-    root = ET.Element("questestinterop", xmlns=_QTI)
-    test = below(root, "assessment", ident=quiz, title=pool.title)
-    top = below(test, "section", ident="root_section")
-    questions = Questions(pool)
+def _test(pool: Pool, quiz: str, questions: Questions) -> Iterator[bytes]:
+    """Yield the quiz in pieces: a group for each question of each exercise, from which a student gets one."""
+    end = b""
     for section in pool.sections:
         for group in groups(section):
+            root = ET.Element("questestinterop", xmlns=_QTI)
+            test = below(root, "assessment", ident=quiz, title=pool.title)
+            top = below(test, "section", ident="root_section")
             group_element = _group(top, pool, group, section.title)
             for variant_question in group.asked:
                 questions.add(group_element, variant_question, group)
-    return xml_bytes(root), questions.images
+            document = xml_bytes(root)
+            first, last = document.index(b"\n      <section"), document.rindex(b"\n    </section>")
+            yield document[0 if not end else first : last]
+            end = document[last:]
+    yield end
 
 
 def _group(parent: ET.Element, pool: Pool, group: QuestionGroup, title: str) -> ET.Element:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import io
 import zipfile
 import zlib
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Iterable, Mapping
 from typing import NamedTuple
 
 _DATE = (1980, 1, 1, 0, 0, 0)  #: the earliest date of the format; the real one would change the bytes
@@ -21,10 +21,13 @@ class PackedFile(NamedTuple):
     crc: int
 
 
-def compressed(data: bytes) -> PackedFile:
-    """Return a file as an archive holds it."""
-    packing = zlib.compressobj(_LEVEL, zlib.DEFLATED, -zlib.MAX_WBITS)
-    return PackedFile(packing.compress(data) + packing.flush(), len(data), zlib.crc32(data))
+def compressed(pieces: Iterable[bytes]) -> PackedFile:
+    """Return a file, given in pieces, as an archive holds it."""
+    packing, packed, size, crc = zlib.compressobj(_LEVEL, zlib.DEFLATED, -zlib.MAX_WBITS), [], 0, 0
+    for piece in pieces:
+        packed.append(packing.compress(piece))
+        size, crc = size + len(piece), zlib.crc32(piece, crc)
+    return PackedFile(b"".join((*packed, packing.flush())), size, crc)
 
 
 def zipped(files: Mapping[str, bytes | PackedFile], programs: Collection[str] = ()) -> bytes:
@@ -33,7 +36,7 @@ def zipped(files: Mapping[str, bytes | PackedFile], programs: Collection[str] = 
     with zipfile.ZipFile(buffer, "w") as archive:
         for path in sorted(files):
             content = files[path]
-            member = content if isinstance(content, PackedFile) else compressed(content)
+            member = content if isinstance(content, PackedFile) else compressed([content])
             info = zipfile.ZipInfo(path, _DATE)
             info.compress_type, info.create_system = zipfile.ZIP_DEFLATED, 3
             info.external_attr = _PROGRAM if path in programs else _FILE

@@ -18,5 +18,5 @@ def test_a_file_compressed_before_gives_the_archive_of_the_library():
             info.compress_type, info.create_system = zipfile.ZIP_DEFLATED, 3
             info.external_attr = (0o100755 if path == "run.sh" else 0o100644) << 16
             archive.writestr(info, data[path])
-    made = zipped({path: compressed(content) for path, content in data.items()}, programs=["run.sh"])
+    made = zipped({path: compressed([content]) for path, content in data.items()}, programs=["run.sh"])
     assert made == zipped(data, programs=["run.sh"]) == buffer.getvalue()
