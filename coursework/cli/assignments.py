@@ -11,7 +11,15 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from coursework.cli.database import keeping
-from coursework.cli.options import exercise_names, opened, print_notes, shared_by_cluster, split_list, writes
+from coursework.cli.options import (
+    exercise_names,
+    opened,
+    print_notes,
+    settings_given,
+    shared_by_cluster,
+    split_list,
+    writes,
+)
 from coursework.cli.printing import progress_bar, say, warn
 from coursework.errors import BadInput, counted, nearest
 from coursework.messages import Message
@@ -128,11 +136,11 @@ def build_papers(context: click.Context, exercises: Sequence[str]) -> None:
         which = "--again" if given["again"] else "--make-up"
         raise BadInput("{which} needs issued papers, but there is no {value}", which=which, value=record)
     if assignment is not None and file is not None:
-        for option in ("seed", "parts"):
+        for option in ("seed", "parts", "given"):
             if settings.is_given(option):
                 warn(
-                    "note: --{option} is for exercises named one by one, and is not used: the file of an assignment states its parts, "
-                    "and its secret draws the variants",
+                    "note: --{option} is for exercises named one by one, and is not used: the file of an assignment states its parts "
+                    "and given values, and its secret draws the variants",
                     option=option,
                 )
         issued = _issued_assignment(course, assignment, file, settings, record, before, stood)
@@ -226,7 +234,22 @@ def _issued_exercises(
     parts = split_list(given["parts"]) or None
     count, seed = given["count"] or 1, given["seed"]
     print_notes(notes)
-    issues = issue(course, names, first_seed=seed, count=count, langs=langs, roster=students, parts=parts)
+    stated = settings_given(given["given"], "--given")
+    if stated and "practice" in given["additions"]:
+        raise BadInput(
+            "--given and --with practice exclude each other: a practice notebook draws fresh values"
+        )
+    issues = issue(
+        course,
+        names,
+        first_seed=seed,
+        count=count,
+        langs=langs,
+        roster=students,
+        parts=parts,
+        given=stated,
+        note=lambda text: print_notes([text]),
+    )
     return AssignedVariants(issues, [for_practice(langs[0])] if students else [])
 
 

@@ -12,10 +12,12 @@ from coursework.cli.options import (
     FOUND,
     WholeNumber,
     exercise_argument,
+    given_option,
     json_option,
     lang_option,
     opened,
     parts_option,
+    print_notes,
     seed_option,
     settings_given,
     split_list,
@@ -95,19 +97,29 @@ def _titled(folder: Any, chapter: Any) -> str:
 @seed_option
 @lang_option
 @parts_option
+@given_option
 @click.pass_context
-def show(context: click.Context, exercise: str, seed: int, lang: str, parts: str) -> None:
+def show(
+    context: click.Context, exercise: str, seed: int, lang: str, parts: str, given: Sequence[str]
+) -> None:
     """Print a statement."""
     from coursework.rendering.renderer import renderer_of
 
     course = opened(context)
-    (drawn,) = _drawn(course[exercise], [seed], lang, parts)
+    (drawn,) = _drawn(course[exercise], [seed], lang, parts, given)
     click.echo(renderer_of(course.folder).terminal(drawn.handout()))
 
 
-def _drawn(exercise: Any, seeds: Sequence[int], lang: str, parts: str) -> list[Any]:
-    """Variants that ask the parts named."""
-    variants = exercise.variants(seeds, lang, split_list(parts) or None)
+def _drawn(
+    exercise: Any, seeds: Sequence[int], lang: str, parts: str, given: Sequence[str] = ()
+) -> list[Any]:
+    """Return variants that ask the parts named, with the values that are given."""
+    values = settings_given(given, "--given")
+    if values and exercise.draws.is_whole(values):
+        from coursework.issuing.issuing import reservations
+
+        print_notes(reservations(exercise, exercise.variant(0, lang, given=values)))
+    variants = exercise.variants(seeds, lang, split_list(parts) or None, given=values)
     for item in variants:
         if not item.parts:
             raise WrongValue(
@@ -132,6 +144,7 @@ def _drawn(exercise: Any, seeds: Sequence[int], lang: str, parts: str) -> list[A
 @click.option("--solution", is_flag=True, help="Include the reference answers.")
 @lang_option
 @parts_option
+@given_option
 @json_option
 @click.pass_context
 def variant(
@@ -142,10 +155,11 @@ def variant(
     solution: bool,
     lang: str,
     parts: str,
+    given: Sequence[str],
     as_json: bool,
 ) -> None:
     """Print the records of variants; with --json one JSON object on each line."""
-    for drawn in _drawn(opened(context)[exercise], range(seed, seed + count), lang, parts):
+    for drawn in _drawn(opened(context)[exercise], range(seed, seed + count), lang, parts, given):
         record = _with_answers(drawn) if solution else drawn.record
         if as_json:
             print_json(record)

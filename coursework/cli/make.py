@@ -18,6 +18,7 @@ from coursework.cli.options import (
     columns_option,
     db_option,
     exercises_argument,
+    given_option,
     known_formats,
     known_languages,
     parts_option,
@@ -67,6 +68,7 @@ from coursework.system.limits import MOST_VARIANTS
     "A student with a language in the roster has that one.",
 )
 @parts_option
+@given_option
 @click.option("--out", type=FilePath(path_type=Path, file_okay=False), help="Folder to write.")
 @click.option(
     "--overwrite",

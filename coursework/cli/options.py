@@ -279,6 +279,12 @@ parts_option = click.option(
     metavar="P,P",
     help="Parts to ask: their ids, 'usual' for the default ones, 'all' for every one.",
 )
+given_option = click.option(
+    "--given",
+    multiple=True,
+    metavar="NAME=VALUE",
+    help="State a given value instead of drawing it: r1=228.6mm.",
+)
 replace_option = click.option(
     "--overwrite", is_flag=True, help="Replace existing notebooks, with all that was written in them."
 )
@@ -336,13 +342,13 @@ def exercise_names(course: Course, names: Sequence[str]) -> tuple[str, ...]:
     return tuple(dict.fromkeys(names)) or course.names
 
 
-def settings_given(settings: Sequence[str]) -> dict[str, str]:
-    """Return the given values of ``--set NAME=VALUE``, as texts."""
+def settings_given(settings: Sequence[str], option: str = "--set") -> dict[str, str]:
+    """Return the given values of ``--set NAME=VALUE`` or ``--given NAME=VALUE``, as texts."""
     given: dict[str, str] = {}
     for setting in settings:
         name, equals, value = setting.partition("=")
         if not equals or not value.strip():
-            raise WrongValue("--set takes NAME=VALUE; found {found!r}", found=setting)
+            raise WrongValue("{option} takes NAME=VALUE; found {found!r}", option=option, found=setting)
         given[name.strip()] = value.strip()
     return given
 

@@ -16,6 +16,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -27,6 +28,9 @@ from coursework.quantities.graph import Graph
 
 if TYPE_CHECKING:
     from coursework.solution import Solution
+
+Stated = Mapping[str, float | str]  #: given values that an instructor states, by name, in canonical units
+NONE_STATED: Stated = MappingProxyType({})
 
 BLOCK = 16  #: candidates a block; part of the stream's definition
 MAX_BLOCKS = 256  #: a seed that finds nothing in BLOCK · MAX_BLOCKS candidates starves
@@ -46,6 +50,11 @@ def _evaluate(bound: Bound | None, drawn: Mapping[str, np.ndarray]) -> Any:
     if not callable(bound):
         return bound
     return bound(*[drawn[n] for n in inspect.signature(bound).parameters])
+
+
+def _plain_value(value: float | str | None) -> float | str:
+    assert value is not None  # stated, or fixed
+    return value if isinstance(value, str) else float(value)
 
 
 def _constant(spec: GivenSpec) -> float:
@@ -247,24 +256,46 @@ class Draws:
 
     # -------------------------------------------------------------------- draws
 
-    def candidates(self, words: np.ndarray) -> dict[str, np.ndarray]:
-        """Return given quantities from raw bits of shape (n, number of given quantities)."""
+    def candidates(self, words: np.ndarray, stated: Stated = NONE_STATED) -> dict[str, np.ndarray]:
+        """Return given quantities from raw bits of shape (n, number of given quantities); those that are stated as
+        they are."""
         drawn: dict[str, np.ndarray] = {}
         for column, (name, spec) in enumerate(self.spec.given.items()):
-            drawn[name] = _draw_one(spec, words[:, column], drawn)
+            if name in stated:
+                drawn[name] = np.full(len(words), stated[name])
+            else:
+                drawn[name] = _draw_one(spec, words[:, column], drawn)
         return drawn
+
+    def is_whole(self, stated: Stated) -> bool:
+        """Return whether nothing is left to draw beside the stated values."""
+        return all(name in stated or spec.is_fixed for name, spec in self.spec.given.items())
+
+    def refusing(self, given: Mapping[str, float | str]) -> tuple[str, ...]:
+        """Return the names of the constraints that given values do not meet."""
+        refused = self.refused({name: np.array([value]) for name, value in given.items()})
+        return tuple(name for name, mask in refused.items() if mask.any())
 
     def _block(self, seed: int, block: int, secret: Secret | None = None) -> np.ndarray:
         return _words(self.name, self.spec.version, seed, block, len(self.spec.given), secret)
 
-    def draw(self, seeds: Sequence[int], secret: Secret | None = None) -> list[dict[str, float | str]]:
+    def draw(
+        self, seeds: Sequence[int], secret: Secret | None = None, stated: Stated = NONE_STATED
+    ) -> list[dict[str, float | str]]:
         """Return the given values of each seed's variant, in canonical units; with a secret, of each code of an assignment.
+
+        Stated values, in canonical units, are not drawn. Where nothing is left to draw, no constraint refuses them;
+        :meth:`refusing` names those that would.
 
         Raises
         ------
         Starved
             Some seed finds no variant in its bounded draws; the message names the constraint that refuses most.
         """
+        if self.is_whole(stated):
+            return [{n: _plain_value(stated.get(n, s.default)) for n, s in self.spec.given.items()}] * len(
+                seeds
+            )
         draws: list[dict[str, float | str] | None] = [None] * len(seeds)
         pending = np.arange(len(seeds))
         for block in range(MAX_BLOCKS):
@@ -272,7 +303,8 @@ class Draws:
             still = []
             for start in range(0, len(pending), 4096):
                 chunk = pending[start : start + 4096]
-                drawn = self.candidates(np.concatenate([self._block(seeds[i], block, secret) for i in chunk]))
+                words = np.concatenate([self._block(seeds[i], block, secret) for i in chunk])
+                drawn = self.candidates(words, stated)
                 good = self.accepted(drawn).reshape(len(chunk), BLOCK)
                 first = good.argmax(axis=1)
                 hit = good.any(axis=1)
@@ -284,14 +316,21 @@ class Draws:
             pending = np.concatenate(still) if still else pending[:0]
             if not len(pending):
                 return draws  # type: ignore[return-value]  # none is left out
-        raise self._starved(seeds[pending[0]], secret)
+        raise self._starved(seeds[pending[0]], secret, stated)
 
-    def _starved(self, seed: int, secret: Secret | None) -> Starved:
+    def _starved(self, seed: int, secret: Secret | None, stated: Stated) -> Starved:
         """Return the error for a seed without a variant: it names the constraints that refuse most of its
         draws."""
         words = np.concatenate([self._block(seed, block, secret) for block in range(MAX_BLOCKS)])
-        refused = self.refused(self.candidates(words))
+        refused = self.refused(self.candidates(words, stated))
         refusals = Counter({constraint: int(mask.sum()) for constraint, mask in refused.items()})
+        if stated:
+            return Starved(
+                "{exercise}: there is no variant with {values}; refused by {constraints}; change one of the values",
+                exercise=self.name,
+                values=", ".join(f"{name} = {value}" for name, value in stated.items()),
+                constraints=", ".join(name for name, count in refusals.most_common(3) if count),
+            )
         worst = ", ".join(f"{name} ({count} times)" for name, count in refusals.most_common(3) if count)
         return Starved(
             f"{self.name}: seed {seed} found no variant in {len(words)} draws; refused by {worst}; "

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, Generic, Protocol, TypeVar
 
 import numpy as np
 
-from coursework.course.draws import Draws
+from coursework.course.draws import Draws, Stated
 from coursework.course.folder import Folder
 from coursework.course.lettering import printed_order
 from coursework.course.records import Records
@@ -263,11 +263,13 @@ class CourseExercise(Generic[V]):
         lang: str | None = None,
         parts: Sequence[str] | None = None,
         secret: Secret | None = None,
+        given: Mapping[str, Any] | None = None,
     ) -> V:
         """Return the variant of a seed: the same for ever for this exercise and version; in the course's language unless told.
 
         ``parts`` are the ids of those that it asks; ``usual`` stands for those that are asked unless told, ``all``
-        for every one. With the ``secret`` of an assignment, the seed is one of its codes.
+        for every one. With the ``secret`` of an assignment, the seed is one of its codes. Values that are ``given``, numbers or
+        texts with a unit, are not drawn.
 
         Raises
         ------
@@ -278,7 +280,7 @@ class CourseExercise(Generic[V]):
         Starved
             The constraints refuse every draw.
         """
-        return self.variants([seed], lang, parts, secret)[0]
+        return self.variants([seed], lang, parts, secret, given)[0]
 
     def variants(
         self,
@@ -286,6 +288,7 @@ class CourseExercise(Generic[V]):
         lang: str | None = None,
         parts: Sequence[str] | None = None,
         secret: Secret | None = None,
+        given: Mapping[str, Any] | None = None,
     ) -> list[V]:
         """Return the variants of many seeds, drawn together; with a ``secret``, of many codes of its assignment."""
         lang = self.folder.language if lang is None else lang
@@ -295,11 +298,24 @@ class CourseExercise(Generic[V]):
             if isinstance(seed, bool) or not isinstance(seed, (int, np.integer)) or seed < 0:
                 raise WrongValue(f"a seed is a whole number from 0 on; found {seed!r}")
         seeds = [int(seed) for seed in seeds]
-        drawn = self.draws.draw(seeds, secret)
+        drawn = self.draws.draw(seeds, secret, self.stated(given or {}))
         return [
             self._variant(self, seed, given, lang, chosen, None, self._orders(seed, secret))
             for seed, given in zip(seeds, drawn, strict=True)
         ]
+
+    def stated(self, given: Mapping[str, Any]) -> Stated:
+        """Return values of given quantities in canonical units, from numbers or texts with a unit.
+
+        Raises
+        ------
+        UnknownName, WrongUnit, WrongValue
+            It is no given quantity of the exercise, or no value of it; with what would do.
+        """
+        for name in given:
+            if name not in self.spec.given:
+                raise unknown("quantity", name, self.spec.given, self.name)
+        return {name: self.intake.value(name, value) for name, value in given.items()}
 
     def _orders(self, code: int, secret: Secret | None) -> dict[str, tuple[str, ...]] | None:
         """Return the orders of choices by part that a code of an assignment draws; None where they are the seed's."""

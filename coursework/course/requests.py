@@ -86,7 +86,7 @@ class Intake:
         elif type(value) is not float:
             value = self._numbers(name, value)
         if isinstance(value, float) and not math.isfinite(value):
-            raise WrongValue(f"{name} must be a finite number; found {value}")
+            raise WrongValue("{name} must be a finite number; found {value}", name=name, value=value)
         if spec is not None:
             self._check_domain(name, spec, value)
         return value
@@ -98,9 +98,15 @@ class Intake:
         except ValueError:
             array = np.asarray(None)
         if array.dtype.kind not in "iufc" or isinstance(value, bool):
-            raise WrongValue(f"{name} must be a number or an array of numbers; found {str(value)[:60]!r}")
+            raise WrongValue(
+                "{name} must be a number or an array of numbers; found {value!r}",
+                name=name,
+                value=str(value)[:60],
+            )
         if array.dtype.kind == "c" and name in self._given:
-            raise WrongValue(f"{name} must be a real number; found {str(value)[:60]!r}")
+            raise WrongValue(
+                "{name} must be a real number; found {value!r}", name=name, value=str(value)[:60]
+            )
         if array.dtype.kind in "iu":
             array = array.astype(float)
         return array if array.ndim else array.item()
@@ -109,8 +115,11 @@ class Intake:
         for case in np.unique(np.asarray(value, dtype=str)).tolist():
             if case not in spec.choices:
                 raise WrongValue(
-                    f"{name} must be one of {', '.join(spec.choices)}; found {case!r}"
-                    f"{nearest(str(case), spec.choices)}"
+                    "{name} must be one of {cases}; found {case!r}{near}",
+                    name=name,
+                    cases=", ".join(spec.choices),
+                    case=case,
+                    near=nearest(str(case), spec.choices),
                 )
         return value if isinstance(value, str) else np.asarray(value)
 
@@ -120,25 +129,44 @@ class Intake:
         unit = self._units.get(name, "1")
         reading = read_number(text, unit)
         if reading.status == "wrong_unit":
-            raise WrongUnit(f"{name} is in {unit}; found {text!r}, which is not a unit of that kind")
+            raise WrongUnit(
+                "{name} is in {unit}; found {text!r}, which is not a unit of that kind",
+                name=name,
+                unit=unit,
+                text=text,
+            )
         if reading.status != "read":
-            raise WrongValue(f"{name} must be a number in {unit}; found {text!r}")
+            raise WrongValue(
+                "{name} must be a number in {unit}; found {text!r}", name=name, unit=unit, text=text
+            )
         if len(reading.values) > 1:
-            values = " or ".join(plain(v) for v in reading.values)
-            raise WrongValue(f"{name}: {text!r} can be read as {values}; write it without a separator")
+            first, second = (plain(value) for value in reading.values[:2])
+            raise WrongValue(
+                "{name}: {text!r} can be read as {first} or {second}; write it without a separator",
+                name=name,
+                text=text,
+                first=first,
+                second=second,
+            )
         return reading.values[0]
 
     def _check_domain(self, name: str, spec: GivenSpec, value: Any) -> None:
         if isinstance(value, np.ndarray):
             if spec.positive and value.size and np.nanmin(value) <= 0:
-                raise WrongValue(f"{name} must be positive; found {np.nanmin(value):g} {spec.unit}")
+                raise _not_positive(name, np.nanmin(value), spec)
             if spec.nonzero and not value.all():
-                raise WrongValue(f"{name} must not be 0")
+                raise WrongValue("{name} must not be 0", name=name)
         elif isinstance(value, float):
             if spec.positive and value <= 0:
-                raise WrongValue(f"{name} must be positive; found {value:g} {spec.unit}")
+                raise _not_positive(name, value, spec)
             if spec.nonzero and value == 0:
-                raise WrongValue(f"{name} must not be 0")
+                raise WrongValue("{name} must not be 0", name=name)
+
+
+def _not_positive(name: str, value: float, spec: GivenSpec) -> WrongValue:
+    return WrongValue(
+        "{name} must be positive; found {value} {unit}", name=name, value=f"{value:g}", unit=spec.unit
+    )
 
 
 def _within_a_turn(angle: Any) -> Any:
@@ -161,4 +189,6 @@ def _structure(name: str, value: Any) -> Any:
     try:
         return _structure(name, json.loads(value))
     except ValueError:
-        raise WrongValue(f"{name} is a list of records, or its JSON; found {value[:60]!r}") from None
+        raise WrongValue(
+            "{name} is a list of records, or its JSON; found {value!r}", name=name, value=value[:60]
+        ) from None

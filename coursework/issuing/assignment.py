@@ -16,7 +16,7 @@ from typing import Any, Protocol
 from coursework.course.exercise import ALL, USUAL, CourseExercise
 from coursework.course.marking_rules import Rules
 from coursework.course.secrecy import Secret
-from coursework.errors import BadCourse, BadInput, nearest
+from coursework.errors import BadCourse, BadInput, CourseworkError, nearest
 from coursework.language.words import languages
 from coursework.messages import Message
 from coursework.sheets.paper import Logo
@@ -62,6 +62,13 @@ class AskedExercise:
     parts: tuple[str, ...] | None = None  #: ids; the usual ones by default
     points: float | Mapping[str, float] | None = None  #: by part, or a total; the exercise's own by default
     seed: int | None = None  #: the same variant of the assignment for everybody
+    given: Mapping[str, Any] = field(default_factory=dict)  #: values that are not drawn, with their units
+
+    def fixed_seed(self, exercise: CourseExercise[Any]) -> int | None:
+        """Return the seed of the variant that everybody gets; None if each has another one."""
+        if self.seed is None and self.given and exercise.draws.is_whole(self.given):
+            return 0
+        return self.seed
 
 
 @dataclass(frozen=True)
@@ -414,7 +421,7 @@ class _AssignmentReader(TomlReader):
         return exercises
 
     def _exercise(self, number: int, table: Mapping[str, Any]) -> AskedExercise:
-        keys = ("name", "parts", "points", "seed")
+        keys = ("name", "parts", "points", "seed", "given")
         for key in table:
             if key not in keys:
                 raise self.refused_key(
@@ -442,7 +449,27 @@ class _AssignmentReader(TomlReader):
                 Message("a seed is a whole number from 0 on; found {found}", found=_short(seed)),
                 number,
             )
-        return AskedExercise(str(name), parts, points, seed)
+        return AskedExercise(
+            str(name), parts, points, seed, self._given(number, str(name), table.get("given"))
+        )
+
+    def _given(self, number: int, name: str, value: Any) -> Mapping[str, Any]:
+        """Return the stated values of given quantities, in canonical units."""
+        if value is None:
+            return {}
+        if not isinstance(value, Mapping):
+            raise self.refused_key(
+                "given",
+                Message(
+                    'given is a table of values with their units: {{ r1 = "228.6 mm" }}; found {found}',
+                    found=_short(value),
+                ),
+                number,
+            )
+        try:
+            return self.course[name].stated(value)
+        except CourseworkError as fault:
+            raise self.refused_key("given", Message("given: {problem}", problem=fault), number) from fault
 
     def _parts(self, number: int, name: str, value: Any) -> tuple[str, ...] | None:
         if value is None:

@@ -12,6 +12,7 @@ from typing import Any, Protocol, Self, TypeVar
 from coursework.course.answer_key import Key
 from coursework.course.asked import KeySource
 from coursework.course.course import Course
+from coursework.course.draws import NONE_STATED, Stated
 from coursework.course.exercise import ALL, USUAL, CourseExercise
 from coursework.course.secrecy import Secret
 from coursework.course.variant import Variant
@@ -35,6 +36,7 @@ def distinct_variants(
     refused: Counter[str] | None = None,
     parts: Sequence[str] | None = None,
     fits: Callable[[V], bool] | None = None,
+    stated: Stated = NONE_STATED,
 ) -> list[V]:
     """Return ``count`` variants of different given values that are worth issuing, from the first seed on.
 
@@ -52,6 +54,8 @@ def distinct_variants(
         Ids of the parts to ask; a variant that asks none of them is skipped.
     fits
         Further condition on a variant.
+    stated
+        Given values that are not drawn.
 
     Raises
     ------
@@ -66,7 +70,7 @@ def distinct_variants(
         # Enough for the missing ones at the share of good variants so far.
         good = (len(by_values) + 1) / (seed - first_seed + 1)
         batch = range(seed, min(limit, seed + max(16, math.ceil((count - len(by_values)) / good))))
-        drawn = exercise.variants(batch, lang, parts)
+        drawn = exercise.variants(batch, lang, parts, given=stated)
         asking = _that_ask(drawn, fits)
         if len(asking) < len(drawn):
             flaw = Message("asks none of the parts") if fits is None else Message("asks other parts")
@@ -132,6 +136,7 @@ def drawn_by(
     fits: Callable[[V], bool] | None = None,
     secret: Secret | None = None,
     issued_values: Mapping[int, tuple[Any, ...]] | None = None,
+    stated: Stated = NONE_STATED,
 ) -> tuple[dict[str, V], list[str]]:
     """Return a variant for each person, independent of their order, and the people who share theirs.
 
@@ -149,6 +154,8 @@ def drawn_by(
         Secret of an assignment, without which nobody can repeat the draws.
     issued_values
         Given values of earlier variants by seed: none of these seeds is used for other values.
+    stated
+        Given values that are not drawn.
 
     Raises
     ------
@@ -169,7 +176,8 @@ def drawn_by(
             for r in rounds
             for person in waiting
         }
-        drawn = _that_ask(exercise.variants(list(dict.fromkeys(seeds.values())), lang, parts, secret), fits)
+        some = exercise.variants(list(dict.fromkeys(seeds.values())), lang, parts, secret, stated)
+        drawn = _that_ask(some, fits)
         drawn = [v for v in drawn if issued_values.get(v.seed, given := tuple(v.given.values())) == given]
         by_seed = {v.seed: v for v in valid_variants(exercise, drawn, refused)}
         for r in rounds:
@@ -196,6 +204,28 @@ def drawn_by(
             flaws=_passed_over(refused),
         )
     return variants, shared
+
+
+def reservations(exercise: CourseExercise[V], variant: V) -> list[str]:
+    """Return a note on a variant of stated values that would not have been drawn; none for any other.
+
+    Raises
+    ------
+    CannotAssemble, Undefined
+        An answer does not exist for these values.
+    """
+    variant.solution()
+    refused = Counter(exercise.draws.refusing(variant.given))
+    valid_variants(exercise, [variant], refused)
+    if not refused:
+        return []
+    return [
+        Message(
+            "{exercise}: a draw would refuse these values, where a wrong answer may pass for right, or rounding cost a right one: {flaws}",
+            exercise=exercise.name,
+            flaws=", ".join(map(localised, refused)),
+        )
+    ]
 
 
 class Issuable(KeySource, Asking, Protocol):
@@ -241,16 +271,19 @@ def issue(
     langs: Sequence[str],
     roster: Sequence[Student] = (),
     parts: Sequence[str] | None = None,
+    given: Mapping[str, Any] | None = None,
+    note: Callable[[str], None] = lambda text: None,
 ) -> list[Issue]:
     """Return one variant of each exercise for each student, by the student and not by the position in the
     roster; without a roster, ``count`` variants from the first seed on.
 
-    ``parts`` are ids of parts to ask instead of the usual ones; each exercise asks those that it has.
+    ``parts`` are ids of parts to ask instead of the usual ones; each exercise asks those that it has. ``given`` states
+    values that are not drawn; each exercise takes those that it has. ``note`` is called with notes for the user.
 
     Raises
     ------
     UnknownName
-        A part that none of the exercises has.
+        A part, or a given quantity, that none of the exercises has.
     Starved
         An exercise has not enough different variants.
     BadInput
@@ -260,22 +293,28 @@ def issue(
     students = list(roster) or [Student("")] * count
     stems = file_stems(s.name for s in students)
     asked_parts = chosen_parts(course, names, parts)
+    values = stated_values(course, names, given or {})
     for name in names:
         exercise = course[name]
         check_languages(exercise, langs)
         check_languages(exercise, *whose_languages(students))
         variants: list[Any]
-        if roster:
+        stated, some = values[name], asked_parts[name]
+        if stated and exercise.draws.is_whole(stated):
+            variants = [exercise.variant(first_seed, langs[0], some, given=stated)] * (len(roster) or 1)
+            for text in reservations(exercise, variants[0]):
+                note(text)
+        elif roster:
             people = [student.draw_key for student in roster]
-            drawn, _ = drawn_by(str(first_seed), exercise, people, langs[0], asked_parts[name])
+            drawn, _ = drawn_by(str(first_seed), exercise, people, langs[0], some, stated=stated)
             variants = [drawn[person] for person in people]
         else:
             variants = distinct_variants(
-                exercise, first_seed, len(students), langs[0], parts=asked_parts[name]
+                exercise, first_seed, len(students), langs[0], parts=some, stated=stated
             )
         if variants:
             try_judges(variants[0].key)
-        for student, stem, variant in zip(students, stems, variants, strict=True):
+        for student, stem, variant in zip(students, stems, variants, strict=False):
             student_langs = (student.lang,) if student.lang else tuple(langs)
             stem = stem or f"{variant.seed:05d}"
             issues.append(
@@ -319,6 +358,29 @@ def check_languages(
                 origin=origin,
                 have=have,
             )
+
+
+def stated_values(
+    course: Course, names: Sequence[str], given: Mapping[str, Any]
+) -> Mapping[str, Mapping[str, float | str]]:
+    """Return for each exercise those of the values that it has, in canonical units.
+
+    Raises
+    ------
+    UnknownName
+        A quantity that is given in none of the exercises.
+    WrongUnit, WrongValue
+        No value of the quantity.
+    """
+    quantities = {name: course[name].spec.given for name in names}
+    for quantity in given:
+        if not any(quantity in of for of in quantities.values()):
+            known = dict.fromkeys(quantity for of in quantities.values() for quantity in of)
+            raise unknown("quantity", quantity, known, ", ".join(names))
+    return {
+        name: course[name].stated({n: value for n, value in given.items() if n in quantities[name]})
+        for name in names
+    }
 
 
 def chosen_parts(

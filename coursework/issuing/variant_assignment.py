@@ -22,7 +22,7 @@ from coursework.errors import BadInput, counted, nearest
 from coursework.issuing.assignment import AskedExercise, Assignment
 from coursework.issuing.flaws import try_judges
 from coursework.issuing.issued import secret_of
-from coursework.issuing.issuing import Issue, check_languages, drawn_by, whose_languages
+from coursework.issuing.issuing import Issue, check_languages, drawn_by, reservations, whose_languages
 from coursework.issuing.roster import Student
 from coursework.issuing.students import file_stems, folded, student_named
 from coursework.messages import Message
@@ -249,13 +249,18 @@ class _Assigner:
                 by_sitting[k] = exercise.from_record(record)
         missing = {k: self._who(*sittings[k], versions) for k in range(len(sittings)) if k not in by_sitting}
         drawn = self._shared(asked_exercise, sittings, versions, by_sitting)
-        if asked_exercise.seed is not None and (
+        fixed_seed = asked_exercise.fixed_seed(exercise)
+        if fixed_seed is not None and (
             unassigned := {w for k, w in missing.items() if sittings[k][1] == 1} - {*drawn}
         ):
             fixed_variant = with_points(
-                exercise.variant(asked_exercise.seed, self.langs[0], asked_exercise.parts, self._key),
+                exercise.variant(
+                    fixed_seed, self.langs[0], asked_exercise.parts, self._key, asked_exercise.given
+                ),
                 asked_exercise,
             )
+            if asked_exercise.given:
+                self.notes += reservations(exercise, fixed_variant)
             drawn |= dict.fromkeys(unassigned, fixed_variant)
         left = [person for person in dict.fromkeys(missing.values()) if person not in drawn]
         drawn |= self._drawn(exercise, asked_exercise, left, by_sitting.values()) if left else {}
@@ -278,7 +283,8 @@ class _Assigner:
             student, sitting = sittings[k]
             if sitting == 1 and (self.assignment.versions == 1 or versions.get(self.of(student))):
                 shared.setdefault(self._who(student, 1, versions), variant)
-        fixed = [v for k, v in issued.items() if sittings[k][1] == 1 and v.seed == asked_exercise.seed]
+        fixed_seed = asked_exercise.fixed_seed(self.course[asked_exercise.name])
+        fixed = [v for k, v in issued.items() if sittings[k][1] == 1 and v.seed == fixed_seed]
         if fixed:
             for student, sitting in sittings:
                 if sitting == 1:
@@ -309,7 +315,7 @@ class _Assigner:
         given_by_seed = {variant.seed: tuple(variant.given.values()) for variant in issued}
         variants, shared = drawn_by(
             self.assignment.name, exercise, people, self.langs[0], asked_exercise.parts, set(given_by_seed.values()),
-            secret=self._key, issued_values=given_by_seed,
+            secret=self._key, issued_values=given_by_seed, stated=asked_exercise.given,
         )  # fmt: skip
         if shared:
             self.notes.append(

@@ -16,7 +16,7 @@ from coursework.platforms.items import Item, Loss, Pool
 from coursework.platforms.pieces import Image, PagePieces
 from coursework.platforms.platform import Platform
 from coursework.system.writing import File
-from coursework.system.zips import compressed, zipped
+from coursework.system.zips import PackedFile, compressed, zipped
 
 _QTI = "http://www.imsglobal.org/xsd/ims_qtiasiv1p2"
 _META = "http://canvas.instructure.com/xsd/cccv1p0"
@@ -56,7 +56,7 @@ def _package(pool: Pool) -> bytes:
     quiz, questions = identified("quiz", pool.name, pool.lang), Questions(pool)
     test = compressed(_test(pool, quiz, questions))
     images = questions.images
-    files = {
+    files: dict[str, bytes | PackedFile] = {
         f"{quiz}/{quiz}.xml": test,
         f"{quiz}/assessment_meta.xml": _settings(pool, quiz),
         **{f"{FOLDER}/{image.name}": image.data for image in images},

@@ -70,9 +70,10 @@ class DrawnPool:
     ) -> list[Any]:
         """Return variants that ask the same parts, all different while such variants last."""
         lang = self.langs[0]
-        if asked_exercise.seed is not None:
+        fixed_seed, stated = asked_exercise.fixed_seed(exercise), asked_exercise.given
+        if fixed_seed is not None:
             variants: list[Any] = [
-                exercise.variant(asked_exercise.seed, lang, asked_exercise.parts, self._key)
+                exercise.variant(fixed_seed, lang, asked_exercise.parts, self._key, stated)
             ]
         else:
             fits = alike(exercise, first_seed, asked_exercise.parts)
@@ -90,6 +91,7 @@ class DrawnPool:
                     asked_exercise.parts,
                     fits=fits,
                     secret=self._key,
+                    stated=stated,
                 )
                 variants = [drawn[index] for index in places]
         try_judges(variants[0].key)
