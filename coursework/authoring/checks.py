@@ -297,7 +297,8 @@ def _is_orientation(exercise: CourseExercise, name: str) -> bool:
 
 
 def agrees(value: Any, expected: Any, *, is_angle: bool = False) -> bool:
-    """Return a printed text agrees to its last digit, a number to 1e-9 relative, a vector likewise."""
+    """Return whether a value agrees with a known one: with a printed text to its last digit, with a number or a vector
+    to 1e-9 relative."""
     if isinstance(value, str):
         return value == expected
     if isinstance(expected, str):
