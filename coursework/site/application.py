@@ -34,7 +34,7 @@ from coursework.site.frame.threads import PAGES_AT_ONCE
 from coursework.site.lti import connecting, links_page
 from coursework.site.papers import assignments
 from coursework.site.people import accounts, home, people_page, privacy, scrubbing
-from coursework.site.practice import practice_page, progress_page
+from coursework.site.practice import lessons_page, practice_page, progress_page
 from coursework.site.publication import publishing
 from coursework.site.warming import begin_warming
 from coursework.system.headers import Guarded
@@ -43,6 +43,7 @@ from coursework.system.headers import Guarded
 ROUTES: tuple[Route, ...] = (
     *home.ROUTES,
     *practice_page.ROUTES,
+    *lessons_page.ROUTES,
     *progress_page.ROUTES,
     *accounts.ROUTES,
     *people_page.ROUTES,

@@ -1,0 +1,163 @@
+"""Lesson in steps of a screen each, for a page on a telephone; its drawings are files beside the page."""
+
+from __future__ import annotations
+
+import base64
+import re
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from hashlib import sha256
+from typing import NamedTuple
+
+from jinja2 import Environment
+from markupsafe import Markup
+
+from coursework.markup.links import TextLink
+from coursework.rendering.books import LessonPages
+from coursework.sheets.book import (
+    BlanksPiece,
+    DrawnPiece,
+    HeadPiece,
+    LaterPiece,
+    LessonText,
+    Piece,
+    PrintedPiece,
+    ProsePiece,
+)
+
+_FULL = 1050  #: letters of a step, about a screen of a telephone
+_FIGURE, _FORMULA, _LINE = 420, 120, 45  #: letters whose room a drawing, a formula, and a printed line take
+
+_PARAGRAPHS = re.compile(r"\n[ \t]*\n+")
+#: Paragraphs that go on with the one before: formulas, items, rows, quotations, code, words after a formula.
+_GOES_ON = re.compile(r"\$\$|[-*+] |\d+[.)] |[ \t]|\||>|[a-zà-ÿ,;:(…]")
+_ANNOUNCES = re.compile(r":[*_\s]*\Z")
+_FENCE = re.compile(r"^```", re.MULTILINE)
+_IMAGE = re.compile(r'<img src="data:image/svg\+xml;base64,([^"]*)"')
+_SIZE = re.compile(r'<svg[^>]*? viewBox="[-\d.]+ [-\d.]+ ([\d.]+) ([\d.]+)"')
+_PIXELS = 3.78  #: of a millimetre
+
+
+class LessonStep(NamedTuple):
+    """Step of a lesson."""
+
+    head: str  #: Markdown of the section that begins here, with its number; empty where none does
+    anchor: str  #: of this heading
+    html: Markup
+    blanks: BlanksPiece | None
+
+
+@dataclass(frozen=True)
+class SteppedLesson:
+    """Lesson ready for its page: steps, and drawings (SVG) by file name."""
+
+    title: str
+    steps: tuple[LessonStep, ...]
+    figures: dict[str, bytes]
+
+
+def stepped(
+    env: Environment, lesson: LessonText, address: Callable[[TextLink], str], figures: str
+) -> SteppedLesson:
+    """Return a lesson in steps.
+
+    Parameters
+    ----------
+    env
+        The environment of HTML templates, in the lesson's language.
+    lesson
+        Drawn and run.
+    address
+        Where links lead; empty for nowhere.
+    figures
+        The address under which the files of drawings are found.
+    """
+    files: dict[str, bytes] = {}
+    pages = LessonPages(env, lesson, address)
+    made: list[LessonStep] = []
+    for pieces in steps(lesson.pieces):
+        html = pages.html([piece for piece in pieces if not isinstance(piece, BlanksPiece)])
+        head = next((piece for piece in pieces if isinstance(piece, HeadPiece) and piece.level == 1), None)
+        title = f"{head.number}. {head.text}" if head and head.number else head.text if head else ""
+        anchor = f"section-{head.number}" if head and head.number else f"step-{len(made) + 1}"
+        blanks = next((piece for piece in pieces if isinstance(piece, BlanksPiece)), None)
+        made.append(LessonStep(title, anchor, Markup(_with_files(html, files, figures)), blanks))
+    return SteppedLesson(lesson.title, tuple(made), files)
+
+
+def _with_files(html: str, files: dict[str, bytes], address: str) -> str:
+    """Return HTML whose drawings are files, named by their content, which browsers fetch as they come into sight."""
+
+    def write(image: re.Match[str]) -> str:
+        svg = base64.b64decode(image[1])
+        name = f"{sha256(svg).hexdigest()[:16]}.svg"
+        files[name] = svg
+        size = _SIZE.search(svg.decode())
+        room = "".join(
+            f' {side}="{float(length) * _PIXELS:.0f}"'
+            for side, length in zip(("width", "height"), size.groups() if size else (), strict=False)
+        )
+        return f'<img src="{address}/{name}" loading="lazy"{room}'
+
+    return _IMAGE.sub(write, html)
+
+
+def steps(pieces: Sequence[Piece]) -> Iterator[tuple[Piece, ...]]:
+    """Yield the pieces of a lesson in steps.
+
+    A step begins at each heading, and ends with the answer to a question, or where a screen is full; what a sentence
+    announces stays with it, and the blanks of an example with its last lines.
+    """
+    step: list[Piece] = []
+    for piece in _small(pieces):
+        if step and _begins(step, piece):
+            yield tuple(step)
+            step = []
+        step.append(piece)
+    if step:
+        yield tuple(step)
+
+
+def _begins(step: Sequence[Piece], piece: Piece) -> bool:
+    """Return whether a piece begins another step."""
+    last = step[-1]
+    if isinstance(piece, BlanksPiece | LaterPiece):
+        return False
+    if isinstance(piece, HeadPiece):
+        return not isinstance(last, HeadPiece)
+    if isinstance(last, LaterPiece):
+        return True
+    if isinstance(last, HeadPiece) or (isinstance(last, ProsePiece) and _ANNOUNCES.search(last.text)):
+        return False
+    return sum(map(_room, step)) + _room(piece) > _FULL
+
+
+def _room(piece: Piece) -> float:
+    """Return the room that a piece takes, in letters."""
+    if isinstance(piece, DrawnPiece):
+        return _FIGURE + len(piece.caption)
+    if isinstance(piece, PrintedPiece):
+        return _LINE * (1 + piece.text.count("\n"))
+    text = getattr(piece, "text", "")
+    return len(text) + _FORMULA * (text.count("$$") // 2)
+
+
+def _small(pieces: Sequence[Piece]) -> Iterator[Piece]:
+    """Yield the pieces with running text cut into paragraphs that may stand apart."""
+    for piece in pieces:
+        if isinstance(piece, ProsePiece):
+            yield from map(ProsePiece, _paragraphs(piece.text))
+        else:
+            yield piece
+
+
+def _paragraphs(text: str) -> list[str]:
+    if _FENCE.search(text):
+        return [text]
+    joined: list[str] = []
+    for paragraph in _PARAGRAPHS.split(text.strip("\n")):
+        if joined and (_GOES_ON.match(paragraph) or _ANNOUNCES.search(joined[-1])):
+            joined[-1] += f"\n\n{paragraph}"
+        else:
+            joined.append(paragraph)
+    return joined
