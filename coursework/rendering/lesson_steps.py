@@ -25,13 +25,14 @@ from coursework.sheets.book import (
     ProsePiece,
 )
 
-_FULL = 1050  #: letters of a step, about a screen of a telephone
+_FULL = 900  #: letters of a step, about a screen of a telephone
 _FIGURE, _FORMULA, _LINE = 420, 120, 45  #: letters whose room a drawing, a formula, and a printed line take
 
 _PARAGRAPHS = re.compile(r"\n[ \t]*\n+")
 #: Paragraphs that go on with the one before: formulas, items, rows, quotations, code, words after a formula.
 _GOES_ON = re.compile(r"\$\$|[-*+] |\d+[.)] |[ \t]|\||>|[a-zà-ÿ,;:(…]")
 _ANNOUNCES = re.compile(r":[*_\s]*\Z")
+_UNSEEN = re.compile(r"\]\([^)]*\)|\\[a-zA-Z]+|[][${}*_^\\]")  #: marks of Markdown and formulas
 _FENCE = re.compile(r"^```", re.MULTILINE)
 _IMAGE = re.compile(r'<img src="data:image/svg\+xml;base64,([^"]*)"')
 _SIZE = re.compile(r'<svg[^>]*? viewBox="[-\d.]+ [-\d.]+ ([\d.]+) ([\d.]+)"')
@@ -45,6 +46,7 @@ class LessonStep(NamedTuple):
     anchor: str  #: of this heading
     html: Markup
     blanks: BlanksPiece | None
+    below: Markup  #: what follows the blanks
 
 
 @dataclass(frozen=True)
@@ -76,12 +78,16 @@ def stepped(
     pages = LessonPages(env, lesson, address)
     made: list[LessonStep] = []
     for pieces in steps(lesson.pieces):
-        html = pages.html([piece for piece in pieces if not isinstance(piece, BlanksPiece)])
+        cut = next((k for k, piece in enumerate(pieces) if isinstance(piece, BlanksPiece)), len(pieces))
+        html, below = (
+            Markup(_with_files(pages.html(some), files, figures))
+            for some in (pieces[:cut], pieces[cut + 1 :])
+        )
         head = next((piece for piece in pieces if isinstance(piece, HeadPiece) and piece.level == 1), None)
         title = f"{head.number}. {head.text}" if head and head.number else head.text if head else ""
         anchor = f"section-{head.number}" if head and head.number else f"step-{len(made) + 1}"
-        blanks = next((piece for piece in pieces if isinstance(piece, BlanksPiece)), None)
-        made.append(LessonStep(title, anchor, Markup(_with_files(html, files, figures)), blanks))
+        blanks = next((piece for piece in pieces[cut:] if isinstance(piece, BlanksPiece)), None)
+        made.append(LessonStep(title, anchor, html, blanks, below))
     return SteppedLesson(lesson.title, tuple(made), files)
 
 
@@ -105,12 +111,12 @@ def _with_files(html: str, files: dict[str, bytes], address: str) -> str:
 def steps(pieces: Sequence[Piece]) -> Iterator[tuple[Piece, ...]]:
     """Yield the pieces of a lesson in steps.
 
-    A step begins at each heading, and ends with the answer to a question, or where a screen is full; what a sentence
-    announces stays with it, and the blanks of an example with its last lines.
+    A step begins at each heading, and ends with the answer to a question, or where a screen is full. What a sentence
+    announces stays with it, what poses an example to complete stays together, and its blanks with its last lines.
     """
     step: list[Piece] = []
-    for piece in _small(pieces):
-        if step and _begins(step, piece):
+    for piece, stays in _small(pieces):
+        if step and not stays and _begins(step, piece):
             yield tuple(step)
             step = []
         step.append(piece)
@@ -135,20 +141,25 @@ def _begins(step: Sequence[Piece], piece: Piece) -> bool:
 def _room(piece: Piece) -> float:
     """Return the room that a piece takes, in letters."""
     if isinstance(piece, DrawnPiece):
-        return _FIGURE + len(piece.caption)
+        return _FIGURE + len(_UNSEEN.sub("", piece.caption))
     if isinstance(piece, PrintedPiece):
         return _LINE * (1 + piece.text.count("\n"))
     text = getattr(piece, "text", "")
-    return len(text) + _FORMULA * (text.count("$$") // 2)
+    return len(_UNSEEN.sub("", text)) + _FORMULA * (text.count("$$") // 2)
 
 
-def _small(pieces: Sequence[Piece]) -> Iterator[Piece]:
-    """Yield the pieces with running text cut into paragraphs that may stand apart."""
-    for piece in pieces:
-        if isinstance(piece, ProsePiece):
-            yield from map(ProsePiece, _paragraphs(piece.text))
-        else:
-            yield piece
+def _small(pieces: Sequence[Piece]) -> Iterator[tuple[Piece, bool]]:
+    """Yield the pieces with running text cut into paragraphs that may stand apart, and whether each stays with the one
+    before."""
+    posing: set[int] = set()
+    for index, piece in enumerate(pieces):
+        if isinstance(piece, BlanksPiece):
+            first = index - piece.told - piece.posed
+            posing |= set(range(first, first + piece.posed))
+    for index, piece in enumerate(pieces):
+        small = map(ProsePiece, _paragraphs(piece.text)) if isinstance(piece, ProsePiece) else [piece]
+        for number, each in enumerate(small):
+            yield each, index in posing and (number > 0 or index - 1 in posing)
 
 
 def _paragraphs(text: str) -> list[str]:

@@ -332,6 +332,8 @@ class WorkedExample(NotebookDisplay):
             self.level,
             tuple(part.id for part in self.parts),
             tuple((numbers[part.id], self._keys[part.id], questions[part.id]) for part in left),
+            len(self.pieces) - (self.level != BARE),
+            int(self.level != BARE),
         )
 
 

@@ -71,7 +71,8 @@ class BlanksPiece:
     """Blanks of the worked example above it, for a page that marks what is typed in them; no paper shows it.
 
     ``exercise``, ``seed``, ``level`` and ``parts`` are those of the example; ``questions`` are the blanks, each with its
-    number there and the name of its answer.
+    number there and the name of its answer; ``posed`` and ``told`` are the counts of the pieces above it that pose the
+    example, and of those that tell a part of its solution.
     """
 
     exercise: str
@@ -79,6 +80,8 @@ class BlanksPiece:
     level: int
     parts: tuple[str, ...]
     questions: tuple[tuple[int, str, Question], ...]
+    posed: int
+    told: int
 
 
 Piece: TypeAlias = ProsePiece | HeadPiece | CodePiece | PrintedPiece | DrawnPiece | LaterPiece | BlanksPiece
