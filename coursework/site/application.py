@@ -31,10 +31,11 @@ from coursework.site.frame.middleware import Middleware
 from coursework.site.frame.requests import Route
 from coursework.site.frame.settings import Site
 from coursework.site.frame.threads import PAGES_AT_ONCE
+from coursework.site.lessons import lessons_page
 from coursework.site.lti import connecting, links_page
 from coursework.site.papers import assignments
 from coursework.site.people import accounts, home, people_page, privacy, scrubbing
-from coursework.site.practice import lessons_page, practice_page, progress_page
+from coursework.site.practice import practice_page, progress_page
 from coursework.site.publication import publishing
 from coursework.site.warming import begin_warming
 from coursework.system.headers import Guarded

@@ -25,9 +25,9 @@ from coursework.site.frame.budgets import BOXES, PLAIN
 from coursework.site.frame.drafts import save_drafts
 from coursework.site.frame.requests import HTTPException, Request, Route
 from coursework.site.frame.responses import redirect
+from coursework.site.lessons.lesson_content import LessonLink
 from coursework.site.papers.assignment_state import to_hand_in
 from coursework.site.practice.contents import ChapterEntry, contents, exercise_title, next_of
-from coursework.site.practice.lesson_content import LessonLink
 from coursework.site.practice.worksheet import BOX_PREFIX, QuestionHints, Worksheet
 
 

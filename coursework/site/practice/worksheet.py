@@ -35,10 +35,11 @@ from coursework.selfstudy.worked import theory
 from coursework.sheets.handout import handout
 from coursework.site.frame.drafts import LONGEST, draft_attributes, save_form_drafts, versions_of
 from coursework.site.frame.requests import HTTPException
-from coursework.site.practice.lesson_content import (
+from coursework.site.lessons.lesson_content import (
     LessonLink,
     help_with_mistake,
     lessons_for,
+    linked_lessons,
     section_links,
 )
 
@@ -372,7 +373,7 @@ class Worksheet:
             "summary": self.summary(checked, contents),
             "is_shown": self.attempt.is_example,
             "moves": self.variant.exercise.is_animated,
-            "lessons": [(lesson, section_links(lesson)) for lesson in self.lessons],
+            "lessons": linked_lessons(self.request.site, self.exercise, self.variant.lang),
             "form": draft_attributes(
                 self.request, f"{self.address}/draft", self.name, self.drafts, BOX_PREFIX, **texts
             ),

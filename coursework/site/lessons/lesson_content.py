@@ -59,11 +59,6 @@ def lesson_of(site: Site, name: str, lang: str) -> SteppedLesson:
     return lesson
 
 
-def prepare(site: Site, name: str, lang: str) -> None:
-    """Render a lesson in the background that may be read next."""
-    site.ahead(("lesson", name, lang), partial(_rendered, site.course, name, lang))
-
-
 def _rendered(course: Course[Any], name: str, lang: str) -> SteppedLesson:
     try:
         lesson: SteppedLesson = confined(_LIMITS, render_lesson, course, name, lang)
@@ -113,6 +108,11 @@ def section_links(lesson: Lesson) -> tuple[LessonLink, ...]:
         for number, title in lesson.places
     )
     return sections or (LessonLink(lesson_address(lesson.name), lesson.title),)
+
+
+def linked_lessons(site: Site, exercise: str, lang: str) -> list[tuple[Lesson, tuple[LessonLink, ...]]]:
+    """Return the lessons that teach an exercise, each with the links to its sections."""
+    return [(lesson, section_links(lesson)) for lesson in lessons_for(site, exercise, lang)]
 
 
 def help_with_mistake(site: Site, exercise: str, mistake: str, lang: str) -> LessonLink | None:

@@ -17,15 +17,14 @@ from coursework.sheets.book import BlanksPiece
 from coursework.site.frame.budgets import BOXES
 from coursework.site.frame.drafts import LONGEST
 from coursework.site.frame.requests import HTTPException, Request, Route
-from coursework.site.practice.contents import exercise_title, titles
-from coursework.site.practice.lesson_content import (
+from coursework.site.lessons.lesson_content import (
     example_of,
     exercises_of,
     lesson_address,
     lesson_lang,
     lesson_of,
-    prepare,
 )
+from coursework.site.practice.contents import exercise_title, titles
 
 _BOX = "blank-"  #: before the names of the boxes of blanks
 _YEAR = 365 * 24 * 3600
@@ -64,8 +63,6 @@ def lesson(request: Request) -> Response:
     folder = request.site.course.folder
     order = folder.lessons
     after = order[order.index(name) + 1] if name != order[-1] else ""
-    if after:
-        prepare(request.site, after, lesson_lang(request.site, after, request.lang))
     return request.render(
         "site/student/lesson",
         lesson=opened,
