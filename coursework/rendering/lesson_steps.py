@@ -42,8 +42,8 @@ _PIXELS = 3.78  #: of a millimetre
 class LessonStep(NamedTuple):
     """Step of a lesson."""
 
-    head: str  #: Markdown of the section that begins here, with its number; empty where none does
-    anchor: str  #: of this heading
+    head: HeadPiece | None  #: of the section that begins here
+    anchor: str  #: of this heading, or of the step
     html: Markup
     blanks: BlanksPiece | None
     below: Markup  #: what follows the blanks
@@ -84,10 +84,9 @@ def stepped(
             for some in (pieces[:cut], pieces[cut + 1 :])
         )
         head = next((piece for piece in pieces if isinstance(piece, HeadPiece) and piece.level == 1), None)
-        title = f"{head.number}. {head.text}" if head and head.number else head.text if head else ""
         anchor = f"section-{head.number}" if head and head.number else f"step-{len(made) + 1}"
         blanks = next((piece for piece in pieces[cut:] if isinstance(piece, BlanksPiece)), None)
-        made.append(LessonStep(title, anchor, html, blanks, below))
+        made.append(LessonStep(head, anchor, html, blanks, below))
     return SteppedLesson(lesson.title, tuple(made), files)
 
 

@@ -29,7 +29,8 @@ class LessonLink(NamedTuple):
     """Link to a lesson or to a section of one."""
 
     address: str
-    title: str  #: Markdown; of a section with its number
+    title: str  #: Markdown
+    number: str = ""  #: of a section; empty for a lesson
 
 
 def lesson_lang(site: Site, name: str, lang: str) -> str:
@@ -104,8 +105,7 @@ def lessons_for(site: Site, exercise: str, lang: str) -> tuple[Lesson, ...]:
 def section_links(lesson: Lesson) -> tuple[LessonLink, ...]:
     """Return the links to the sections of a lesson that teach an exercise; to the lesson where the whole of it does."""
     sections = tuple(
-        LessonLink(lesson_address(lesson.name, number), f"{number}. {title}")
-        for number, title in lesson.places
+        LessonLink(lesson_address(lesson.name, number), title, number) for number, title in lesson.places
     )
     return sections or (LessonLink(lesson_address(lesson.name), lesson.title),)
 
@@ -124,8 +124,9 @@ def help_with_mistake(site: Site, exercise: str, mistake: str, lang: str) -> Les
         return None
     name, number = sections[exercise, mistake]
     folder = site.course.folder
-    title = lesson_sections(folder, name, lang).get(number) or lesson_title(folder, name, lang)
-    return LessonLink(lesson_address(name, number), title)
+    heading = lesson_sections(folder, name, lang).get(number, "").partition(". ")[2]
+    title = heading or lesson_title(folder, name, lang)
+    return LessonLink(lesson_address(name, number), title, str(number) if heading else "")
 
 
 def exercises_of(site: Site, name: str, lang: str) -> tuple[str, ...]:

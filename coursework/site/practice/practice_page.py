@@ -25,7 +25,7 @@ from coursework.site.frame.budgets import BOXES, PLAIN
 from coursework.site.frame.drafts import save_drafts
 from coursework.site.frame.requests import HTTPException, Request, Route
 from coursework.site.frame.responses import redirect
-from coursework.site.lessons.lesson_content import LessonLink
+from coursework.site.lessons.lesson_content import LessonLink, lesson_address
 from coursework.site.papers.assignment_state import to_hand_in
 from coursework.site.practice.contents import ChapterEntry, contents, exercise_title, next_of
 from coursework.site.practice.worksheet import BOX_PREFIX, QuestionHints, Worksheet
@@ -221,7 +221,7 @@ def _focus(request: Request, hinted: dict[str, Any]) -> str:
 
 
 class DoneExercise(NamedTuple):
-    """Exercise whose questions are all right: its title, the section that teaches it, and its chapter."""
+    """Exercise whose questions are all right: its title, the lesson that teaches it, and its chapter."""
 
     title: str
     lesson: LessonLink | None
@@ -235,8 +235,8 @@ def _after(request: Request, work: Worksheet, summary: dict[str, Any]) -> dict[s
     progress = PersonProgress(request.site.store, request.user.id, request.site.clock).progress
     chapters = contents(request, progress)
     own = (c for c in chapters if any(entry.name == work.exercise for entry in c.exercises))
-    link = next(iter(work.help_links), None)
-    done = DoneExercise(work.variant.text.title, link, next(own, None))
+    lesson = next((LessonLink(lesson_address(each.name), each.title) for each in work.lessons), None)
+    done = DoneExercise(work.variant.text.title, lesson, next(own, None))
     return {"next": next_of(request, progress), "done": done}
 
 
