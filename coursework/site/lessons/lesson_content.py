@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from coursework.sheets.book import BlanksPiece
     from coursework.site.frame.settings import Site
 
-_LIMITS = ResourceLimits(60.0, 1536 * MEGABYTE)  #: of the process that runs a lesson's cells
+_LIMITS = ResourceLimits(60.0, 1536 * MEGABYTE, niceness=0)  #: of the process that runs a lesson's cells
 
 
 class LessonLink(NamedTuple):

@@ -54,6 +54,11 @@
     const k = named(location.hash);
     if (k >= 0) show(k, false);
   });
+  if (matchMedia("(min-width: 76rem)").matches) lesson.querySelector(".lesson-contents").open = true;
+  for (const failure of ["htmx:sendError", "htmx:responseError"]) {
+    lesson.addEventListener(failure, (event) => { event.detail.target.textContent = lesson.dataset.notChecked; });
+  }
+
   const asked = named(location.hash), stopped = place(name);
   const first = asked >= 0 ? asked : narrow.matches && stopped ? Math.min(Math.max(stopped.step, 1), steps.length) - 1 : 0;
   lesson.classList.add("stepped");
