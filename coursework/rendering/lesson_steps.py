@@ -26,6 +26,7 @@ from coursework.sheets.book import (
 )
 
 _FULL = 900  #: letters of a step, about a screen of a telephone
+_MORE = 1.5  #: times as much as a step may take, so that a drawing stays with its words
 _FIGURE, _FORMULA, _LINE = 420, 120, 45  #: letters whose room a drawing, a formula, and a printed line take
 
 _PARAGRAPHS = re.compile(r"\n[ \t]*\n+")
@@ -134,7 +135,8 @@ def _begins(step: Sequence[Piece], piece: Piece) -> bool:
         return True
     if isinstance(last, HeadPiece) or (isinstance(last, ProsePiece) and _ANNOUNCES.search(last.text)):
         return False
-    return sum(map(_room, step)) + _room(piece) > _FULL
+    most = _MORE * _FULL if isinstance(piece, DrawnPiece) else _FULL
+    return sum(map(_room, step)) + _room(piece) > most
 
 
 def _room(piece: Piece) -> float:
