@@ -100,7 +100,9 @@ def test_a_blank_is_marked_in_its_place(window, desk):
     assert serious(page) == []
     page.route("**/lessons/*", lambda route: route.abort())
     form.locator("button").tap()
-    page.wait_for_function("t => document.querySelector(t).innerText.includes('Nothing was checked')", arg=f"#checked-{number}")
+    page.wait_for_function(
+        "t => document.querySelector(t).innerText.includes('Nothing was checked')", arg=f"#checked-{number}"
+    )
     page.set_viewport_size({"width": 320, "height": 568})
     assert too_wide(page) == 0
 
