@@ -7,6 +7,7 @@ from threading import Thread
 import pytest
 from site_people import MAX, ZOE, Class
 from site_practising import BOX, Practising, right_answer, words_of
+from site_walk import EXERCISE, Filled
 from sweeps import sampled
 from tables import each_row
 
@@ -217,6 +218,16 @@ def test_an_exercise_its_hints_and_its_mistakes_lead_to_the_sections_that_help(c
     told = re.search(rf'<div id="told-{BOX}{part.id}".*?</div>', page, re.DOTALL)[0]
     name, number = explained_mistakes(COURSE, "en")["four_bar_positions", "notes_c_sign"]
     assert links.findall(told) == [(name, str(number))] == [("positions", "12")]
+
+
+def test_feedback_leads_to_the_lessons_of_what_lost_points(tmp_path):
+    site = Filled(f"sqlite:///{tmp_path}/site.db")
+    page = site.browser(ZOE).get(f"/assignments/{site.number}/feedback").text
+    again = page.partition("<h2>To read again</h2>")[2].partition("</section>")[0]
+    taught = taught_by(COURSE.folder, EXERCISE, "en")
+    assert set(re.findall(r'href="/lessons/(\w+)#section-(\d+)"', again)) == {
+        (lesson.name, number) for lesson in taught for number, _ in lesson.places
+    }
 
 
 @pytest.mark.parametrize("lang", COURSE.folder.languages)
