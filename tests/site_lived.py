@@ -90,6 +90,7 @@ def shown(site: Lived) -> list[Shown]:
     launch = Launch("https://moodle.example", "client", "1", "57", STUDENT, Role.STUDENT, "link")
     students = (
         ("/practice", "/practice"),
+        ("/lessons/{lesson}", "/lessons/plane_mechanisms"),
         (practice, sheet),
         (f"{practice}/solution", f"{sheet}/solution"),
         (f"{practice}/motion", f"{sheet}/motion"),
@@ -143,7 +144,7 @@ def shown(site: Lived) -> list[Shown]:
 NO_PAGES = frozenset(
     (
         "/", "/language", "/who", "/sign-out", "/account/data", "/static/{name}", "/practice/{exercise}", "/practice/{exercise}/{seed}/draft",
-        "/practice/{exercise}/{seed}/read", "/progress/progress.json", "/assignments/{number:int}/keep", "/assignments/{number:int}/hand-in",
+        "/practice/{exercise}/{seed}/read", "/lessons/{lesson}/figures/{figure}", "/progress/progress.json", "/assignments/{number:int}/keep", "/assignments/{number:int}/hand-in",
         "/assignments/{number:int}/file", "/assignments/{number:int}/{file}", "/assignments/{number:int}/receipts/{code}.{ending}", "/desk/issued",
         "/desk/people/add", "/desk/people/add-staff", "/desk/people/{person}/data",
         *(f"/desk/people/{{person}}/{end}" for end in ("invitation", "role", "separate")), "/desk/assignments/dealing/{token}", "/desk/{assignment:int}/figure",

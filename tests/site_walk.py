@@ -171,6 +171,8 @@ def fillings(site: Filled) -> dict[str, Filling]:
             for end in ("", "/invitation", "/role", "/separate", "/data", "/erase")
         },
         "/practice/{exercise}": practice,
+        "/lessons/{lesson}": Filling({"lesson": "plane_mechanisms"}),
+        "/lessons/{lesson}/figures/{figure}": Filling({"lesson": "plane_mechanisms", "figure": "none.svg"}),
         **{
             f"/practice/{{exercise}}/{{seed}}{end}": practice
             for end in ("", "/draft", "/read", "/solution", "/motion")

@@ -31,6 +31,11 @@ class Lesson:
     title: str
     sections: tuple[str, ...] = ()  #: their headings; none when the whole lesson does
 
+    @property
+    def places(self) -> tuple[tuple[str, str], ...]:
+        """The numbers and the titles of its sections."""
+        return tuple((number, title) for number, _, title in (one.partition(". ") for one in self.sections))
+
 
 def lesson_file(folder: Folder, name: str, lang: str) -> Path:
     """Return the text of a lesson in a language.

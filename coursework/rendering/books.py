@@ -19,7 +19,7 @@ from coursework.markup.markdown import INDEX, anchor
 from coursework.rendering import html, pdf, views
 from coursework.rendering.environment import render
 from coursework.rendering.keeping import keeping
-from coursework.sheets.book import Book, BookExercise, LessonText, Piece
+from coursework.sheets.book import BlanksPiece, Book, BookExercise, LessonText, Piece
 
 _TALL = 78  #: mm that a drawing of a lesson takes at most
 
@@ -75,7 +75,7 @@ def _typst_pieces(env: Environment, book: Book, lesson: LessonText, pieces: Sequ
 
     names = _of_book(book) | {
         "lesson": lesson,
-        "pieces": [_with_kind(exercise) for exercise in pieces],
+        "pieces": [_with_kind(piece) for piece in pieces if not isinstance(piece, BlanksPiece)],
         "tall": _TALL,
     }
     names["relinked"] = lambda text: relinked(text, write)
@@ -180,22 +180,36 @@ def _own_exercises(book: Book, lesson: LessonText) -> tuple[BookExercise, ...]:
 
 
 def _html_pieces(env: Environment, book: Book, lesson: LessonText, names: Mapping[str, Any]) -> Markup:
-    met: set[str] = set()
-
-    def write(link: TextLink) -> str:
-        if link.kind == TERM:
-            first = link.name not in met
-            met.add(link.name)
-            return f'[{link.said}]({INDEX} "{link.name}")' if first else f"*{link.said}*"
+    def address(link: TextLink) -> str:
         file = f"{link.name}.html"
         section = f"#section-{link.section}" if link.section else ""
-        return f"[{link.said}]({file}{section})" if file in names["files"] else link.said
+        return f"{file}{section}" if file in names["files"] else ""
 
-    answers = {number: [_with_kind(piece) for piece in pieces] for number, pieces in lesson.answers}
-    variables = {
-        "lesson": lesson,
-        "pieces": [_with_kind(piece) for piece in lesson.pieces],
-        "answers": answers,
-    }
-    variables["relinked"] = lambda text: relinked(text, write)
-    return Markup(render(env, "book/_pieces.html.j2", {**names, **variables}))
+    return LessonPages(env, lesson, address).html(lesson.pieces)
+
+
+class LessonPages:
+    """Lesson in a page, in one piece or step by step; ``address`` leads to an exercise, a lesson or a section, and is empty
+    where a link has no place to lead to."""
+
+    def __init__(self, env: Environment, lesson: LessonText, address: Callable[[TextLink], str]):
+        self._env, self._address = env, address
+        self._met: set[str] = set()
+        self._names = {
+            "words": words(lesson.lang),
+            "answers": {number: [_with_kind(piece) for piece in told] for number, told in lesson.answers},
+            "relinked": lambda text: relinked(text, self._written),
+        }
+
+    def html(self, pieces: Sequence[Piece]) -> Markup:
+        """Return some of the lesson's pieces; each term is marked where it is first met."""
+        shown = [_with_kind(piece) for piece in pieces]
+        return Markup(render(self._env, "book/_pieces.html.j2", {**self._names, "pieces": shown}))
+
+    def _written(self, link: TextLink) -> str:
+        if link.kind == TERM:
+            is_first = link.name not in self._met
+            self._met.add(link.name)
+            return f'[{link.said}]({INDEX} "{link.name}")' if is_first else f"*{link.said}*"
+        address = self._address(link)
+        return f"[{link.said}]({address})" if address else link.said

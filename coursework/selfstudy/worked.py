@@ -7,7 +7,7 @@ import re
 from collections.abc import Iterable, Mapping, Sequence
 from functools import lru_cache
 from itertools import chain
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -22,6 +22,7 @@ from coursework.rendering.views import ROOM_ALONE, ROOM_BESIDE, offered
 from coursework.selfstudy import hints
 from coursework.selfstudy.attempt import sentence_of, sign_of
 from coursework.sheets.answer_sheet import answer_sheet, answer_text, question_called
+from coursework.sheets.book import BlanksPiece
 from coursework.sheets.handout import handout
 
 if TYPE_CHECKING:
@@ -201,6 +202,14 @@ _ROOM = ROOM_BESIDE[0], ROOM_ALONE[1]  #: of the figure, mm
 BARE = LEVELS  #: the level that tells nothing but what is asked
 
 
+class BlankMark(NamedTuple):
+    """Mark of an answer to a blank: its sign, and a sentence of Markdown."""
+
+    sign: str
+    sentence: str
+    is_right: bool
+
+
 class WorkedExample(NotebookDisplay):
     """Worked example, for display in a cell; :meth:`check` marks the answers in its blanks."""
 
@@ -283,19 +292,49 @@ class WorkedExample(NotebookDisplay):
         UnknownName
             An answer to a question that is not left.
         """
-        given = {**(answers or {}), **named}
+        marks = self.marks({**(answers or {}), **named})
+        lines = (f"- {mark.sign} `{name}` — {mark.sentence}" for name, mark in marks.items())
+        return NotebookDisplay(self.lang, "\n".join(lines))
+
+    def marks(self, answers: Mapping[str, Any]) -> Mapping[str, BlankMark]:
+        """Return the marks of answers to the blanks, by the names of their answers; those of blank ones are left out.
+
+        Raises
+        ------
+        UnknownName
+            An answer to a question that is not left.
+        """
         by_key = {self._keys[part.id]: part.id for part in self.left}
-        for name in given:
+        for name in answers:
             if name not in by_key and name not in by_key.values():
                 raise unknown("question", name, tuple(by_key), self.variant.exercise.name)
         requested = self._asking
-        marking = grade(requested, {by_key.get(name, name): answer for name, answer in given.items()})
-        lines = (
-            f"- {sign_of(mark)} `{self._keys[mark.part]}` — {sentence_of(requested, mark, '')}"
+        marking = grade(requested, {by_key.get(name, name): answer for name, answer in answers.items()})
+        return {
+            self._keys[mark.part]: BlankMark(
+                sign_of(mark), sentence_of(requested, mark, ""), mark.verdict == "correct"
+            )
             for mark in marking.values()
             if mark.verdict != "missing"
+        }
+
+    @property
+    def blanks_piece(self) -> BlanksPiece | None:
+        """Blanks that a page can mark; None where nothing is left."""
+        numbers = {part.id: k for k, part in enumerate(self.parts, 1)}
+        questions = {q.id: q for q in handout(self._asking).questions if not q.is_open}
+        left = [part for part in self.left if part.id in questions]
+        if not left:
+            return None
+        return BlanksPiece(
+            self.variant.exercise.name,
+            self.variant.seed,
+            self.level,
+            tuple(part.id for part in self.parts),
+            tuple((numbers[part.id], self._keys[part.id], questions[part.id]) for part in left),
+            len(self.pieces) - (self.level != BARE),
+            int(self.level != BARE),
         )
-        return NotebookDisplay(self.lang, "\n".join(lines))
 
 
 def _named(question: Question) -> str:

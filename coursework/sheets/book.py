@@ -15,7 +15,7 @@ from coursework.language.words import words
 
 if TYPE_CHECKING:
     from coursework.figures import Figure, Picture
-    from coursework.sheets.sheet import AnswerSheet, Handout
+    from coursework.sheets.sheet import AnswerSheet, Handout, Question
 
 
 @dataclass(frozen=True)
@@ -66,7 +66,25 @@ class LaterPiece:
     number: int
 
 
-Piece: TypeAlias = ProsePiece | HeadPiece | CodePiece | PrintedPiece | DrawnPiece | LaterPiece
+@dataclass(frozen=True)
+class BlanksPiece:
+    """Blanks of the worked example above it, for a page that marks what is typed in them; no paper shows it.
+
+    ``exercise``, ``seed``, ``level`` and ``parts`` are those of the example; ``questions`` are the blanks, each with its
+    number there and the name of its answer; ``posed`` and ``told`` are the counts of the pieces above it that pose the
+    example, and of those that tell a part of its solution.
+    """
+
+    exercise: str
+    seed: int
+    level: int
+    parts: tuple[str, ...]
+    questions: tuple[tuple[int, str, Question], ...]
+    posed: int
+    told: int
+
+
+Piece: TypeAlias = ProsePiece | HeadPiece | CodePiece | PrintedPiece | DrawnPiece | LaterPiece | BlanksPiece
 
 
 @dataclass(frozen=True)

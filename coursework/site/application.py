@@ -31,6 +31,7 @@ from coursework.site.frame.middleware import Middleware
 from coursework.site.frame.requests import Route
 from coursework.site.frame.settings import Site
 from coursework.site.frame.threads import PAGES_AT_ONCE
+from coursework.site.lessons import lessons_page
 from coursework.site.lti import connecting, links_page
 from coursework.site.papers import assignments
 from coursework.site.people import accounts, home, people_page, privacy, scrubbing
@@ -43,6 +44,7 @@ from coursework.system.headers import Guarded
 ROUTES: tuple[Route, ...] = (
     *home.ROUTES,
     *practice_page.ROUTES,
+    *lessons_page.ROUTES,
     *progress_page.ROUTES,
     *accounts.ROUTES,
     *people_page.ROUTES,

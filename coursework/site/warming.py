@@ -1,5 +1,5 @@
-"""Warm-up of a process: it prepares solutions, the course's contents and templates, so that the first request
-is not slow."""
+"""Warm-up of a process: it prepares solutions, the course's contents and templates, and where a worker marks also the
+lessons, so that the first request is not slow."""
 
 from __future__ import annotations
 
@@ -12,6 +12,7 @@ from coursework.errors import CourseworkError
 from coursework.rendering.html import environment_of
 from coursework.selfstudy.worked import theory
 from coursework.site.frame.settings import Site
+from coursework.site.lessons.lesson_content import lesson_lang, lesson_of
 from coursework.site.practice.contents import titles
 
 LOG = logging.getLogger("coursework.site")
@@ -44,6 +45,10 @@ def _pieces(site: Site) -> Iterator[Callable[[], object]]:
             yield partial(env.get_template, name)
     for exercise in site.course.folder.study_order:
         yield partial(_solved, site, exercise)
+    if site.has_worker:
+        for lang in site.languages:
+            for lesson in site.course.folder.lessons:
+                yield partial(lesson_of, site, lesson, lesson_lang(site, lesson, lang))
 
 
 def _is_of_pages(name: str) -> bool:

@@ -322,6 +322,7 @@ class ResourceLimits(NamedTuple):
 
     seconds: float
     memory: int
+    niceness: int = _NICE  #: 0 where somebody waits for the result
 
 
 class Exceeded(CourseworkError):
@@ -394,7 +395,7 @@ def _answered(answers: Connection, process: BaseProcess, means: ResourceLimits) 
 def _do_confined(answer: Connection, means: ResourceLimits, sent: bytes) -> None:
     follow_parent()
     with suppress(AttributeError, OSError):
-        os.nice(_NICE)
+        os.nice(means.niceness)
     function, arguments = pickle.loads(sent)  # includes imports, which do not count
     unlimited = _limit(means)
     try:

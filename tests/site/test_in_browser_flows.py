@@ -297,6 +297,8 @@ def test_a_keyboard_alone_practises(room, window):
     page = window(ZOE, "/practice", size="desk")
     tabbed(page, ".skip")
     page.keyboard.press("Enter")
+    tabbed(page, "#chapter-2 summary")
+    page.keyboard.press("Enter")
     tabbed(page, "a[href='/practice/coriolis']")
     with page.expect_navigation():
         page.keyboard.press("Enter")

@@ -7,6 +7,7 @@ above it; a picture stands on a line of its own, ``![caption](figure:NAME)`` or 
 
 from __future__ import annotations
 
+import ast
 import re
 from collections.abc import Callable, Iterator, Sequence, Set
 from dataclasses import dataclass, field
@@ -163,6 +164,19 @@ def _image(image: re.Match[str], file: str, line: int) -> LessonImage:
     return LessonImage(
         image["caption"], target[1], target[2], {name: value for name, _, value in pairs}, line
     )
+
+
+def mistakes_shown(cell: CodeCell) -> Iterator[tuple[str, str]]:
+    """Yield the exercise and the name of each mistake that a cell shows by ``coursework.mistakes("EXERCISE", "NAME")``."""
+    for call in ast.walk(ast.parse(cell.code)):
+        if (
+            isinstance(call, ast.Call)
+            and isinstance(call.func, ast.Attribute)
+            and call.func.attr == "mistakes"
+        ):
+            named = [each.value for each in call.args if isinstance(each, ast.Constant)]
+            for mistake in named[1:]:
+                yield str(named[0]), str(mistake)
 
 
 _FORMS = 'exercise:NAME, lesson:NAME, lesson:NAME#3, #index "entry" or https://…'

@@ -151,6 +151,25 @@ def _check_link(folder: Folder, link: TextLink, lang: str, position: str) -> Non
         )
 
 
+def explained_mistakes(course: Course[Any], lang: str) -> Mapping[tuple[str, str], tuple[str, int]]:
+    """Return the first lesson and section whose cells explain a named mistake, by exercise and mistake; nothing is run.
+
+    A lesson that is not written in the language is left out.
+    """
+    places: dict[tuple[str, str], tuple[str, int]] = {}
+    for name in course.folder.lessons:
+        path = course.folder.lesson_place / f"{name}.{lang}.md"
+        section = 0
+        for block in source.blocks(read_text(path), path.name) if path.exists() else ():
+            if isinstance(block, source.LessonProse):
+                numbers = [int(head[2]) for head in _HEAD.finditer(block.text) if head[2]]
+                section = numbers[-1] if numbers else section
+            elif isinstance(block, source.CodeCell):
+                for mistake in source.mistakes_shown(block):
+                    places.setdefault(mistake, (name, section))
+    return places
+
+
 def faults(course: Course[Any], name: str) -> tuple[str, ...]:
     """Return the faults of a lesson, a sentence each.
 

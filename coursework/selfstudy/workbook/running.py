@@ -272,7 +272,8 @@ def shows(value: Any) -> CellOutput:
         return CellOutput(later=(ProsePiece(value.outcome),))
     if isinstance(value, WorkedExample):
         right = "\n".join(f"- {line}" for line in value.right)
-        return CellOutput(tuple(_pieces(value)), (ProsePiece(right),) if right else ())
+        blanks = filter(None, [value.blanks_piece])
+        return CellOutput((*_pieces(value), *blanks), (ProsePiece(right),) if right else ())
     if isinstance(value, NotebookDisplay):
         return CellOutput(tuple(_pieces(value)))
     if isinstance(value, Animation):

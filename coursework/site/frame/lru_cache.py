@@ -28,3 +28,8 @@ class LRUCache:
             while len(self._items) > self._most:
                 self._items.popitem(last=False)
         return item
+
+    def drop(self, key: Hashable) -> None:
+        """Remove the item of a key, if there is one."""
+        with self._lock:
+            self._items.pop(key, None)

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Hashable
-from concurrent.futures import ThreadPoolExecutor
+from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import dataclass, field
 from datetime import datetime
 from enum import Enum
 from functools import cached_property
 from pathlib import Path
+from threading import Lock
 from typing import Any
 
 from sqlalchemy import Connection
@@ -54,6 +55,7 @@ class Site:
     lti: Path | None = None  #: folder of the learning platforms
     has_worker: bool = False  #: a worker marks submissions; otherwise the submitting request does
     _revision: int = field(init=False)
+    _lock: Lock = field(init=False, repr=False, default_factory=Lock)
 
     def __post_init__(self) -> None:
         if self.clock is None:
@@ -69,9 +71,11 @@ class Site:
     def pool(self) -> PracticePool:
         return PracticePool(self.course, self.store)
 
-    def ahead(self, key: Hashable, work: Callable[[], object]) -> None:
-        """Run work in the background that a request will soon need; once for each key."""
-        self.cache.get(("ahead", key), lambda: self._aside.submit(work))
+    def ahead(self, key: Hashable, work: Callable[[], Any]) -> Future[Any]:
+        """Run work in the background that a request will soon need, once for each key; return its result to come."""
+        with self._lock:
+            submitted: Future[Any] = self.cache.get(("ahead", key), lambda: self._aside.submit(work))
+        return submitted
 
     @cached_property
     def _aside(self) -> ThreadPoolExecutor:

@@ -28,6 +28,7 @@ from coursework.site.frame.forms import read_upload
 from coursework.site.frame.requests import HTTPException, Request, Route, Upload
 from coursework.site.frame.responses import Download, redirect
 from coursework.site.frame.times import exact_text, length_text, zone_name
+from coursework.site.lessons.lesson_content import linked_lessons
 from coursework.site.papers import receipts, submission
 from coursework.site.papers.assignment_state import (
     AssignmentState,
@@ -305,6 +306,7 @@ def feedback(request: Request) -> Response:
         state=state,
         notes=notes,
         delivery=chosen,
+        lessons={name: linked_lessons(request.site, name, request.lang) for name in paper.issued.exercises},
         **paper.template_names(document),
     )
 

@@ -3,14 +3,17 @@ exercise."""
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
+from contextlib import suppress
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from markupsafe import Markup
 
-from coursework.course.chapters import ChapterSection
+from coursework.course.chapters import Chapter, ChapterSection
 from coursework.course.lessons import lesson_title
-from coursework.errors import BadCourse
+from coursework.errors import BadCourse, CourseworkError
+from coursework.figures import Figure
 from coursework.language.words import words
 from coursework.markup import markdown
 from coursework.selfstudy.mastery import (
@@ -23,10 +26,15 @@ from coursework.selfstudy.mastery import (
 )
 from coursework.selfstudy.progress import Progress
 from coursework.selfstudy.workbook.binding import chapters_of
+from coursework.site.frame.pool import FIRST_SEED
 
 if TYPE_CHECKING:
     from coursework.site.frame.requests import Request
     from coursework.site.frame.settings import Site
+
+_FIGURE_MM = (44.0, 30.0)  #: room of a chapter's figure
+_SIZE = re.compile(r'<svg( xmlns="[^"]*")? width="[^"]*" height="[^"]*"')
+_PAPER = re.compile(r"<rect[^>]*/>\n?")
 
 
 class ExerciseEntry(NamedTuple):
@@ -36,13 +44,14 @@ class ExerciseEntry(NamedTuple):
     title: str
     state: str  #: new, begun, due, again or done
     state_text: str  #: the state in words
+    is_right: bool = False  #: every question that was tried is right
 
 
 class LessonGroup(NamedTuple):
     """Lesson or heading with its exercises."""
 
     title: str
-    is_lesson: bool
+    lesson: str  #: its name; empty for a heading
     exercises: tuple[ExerciseEntry, ...]
 
 
@@ -52,6 +61,11 @@ class ChapterEntry(NamedTuple):
     number: int
     title: str
     groups: tuple[LessonGroup, ...]
+    figure: Markup = Markup("")  #: a mechanism of the chapter, small
+
+    @property
+    def lessons(self) -> tuple[LessonGroup, ...]:
+        return tuple(group for group in self.groups if group.lesson)
 
     @property
     def exercises(self) -> tuple[ExerciseEntry, ...]:
@@ -60,6 +74,16 @@ class ChapterEntry(NamedTuple):
     @property
     def begun(self) -> int:
         return sum(entry.state != "new" for entry in self.exercises)
+
+    @property
+    def done(self) -> int:
+        return sum(entry.is_right for entry in self.exercises)
+
+    @property
+    def next(self) -> ExerciseEntry | None:
+        """Exercise to go on with: one that is due, or one that is not all right yet; None if there is none."""
+        left = [entry for entry in self.exercises if not entry.is_right or entry.state == "due"]
+        return min(left, key=lambda entry: entry.state != "due", default=None)
 
 
 def contents(request: Request, progress: Progress) -> list[ChapterEntry]:
@@ -88,10 +112,31 @@ def titles(site: Site, lang: str) -> tuple[ChapterEntry, ...]:
 def _titles(site: Site, lang: str) -> tuple[ChapterEntry, ...]:
     return tuple(
         ChapterEntry(
-            chapter.number, chapter.title(lang), tuple(_group(site, s, lang) for s in chapter.sections)
+            chapter.number,
+            chapter.title(lang),
+            tuple(_group(site, s, lang) for s in chapter.sections),
+            _figure(site, chapter),
         )
         for chapter in chapters_of(site.course, lang)
     )
+
+
+def _figure(site: Site, chapter: Chapter) -> Markup:
+    """Return the figure of an exercise of a chapter without its letters, as a piece of the page; of one that moves if there
+    is one."""
+    exercises = [site.course[name] for name in chapter.exercises]
+    for exercise in sorted(exercises, key=lambda each: not each.is_animated):
+        with suppress(CourseworkError):
+            figure = exercise.variant(FIRST_SEED).figure
+            if isinstance(figure, Figure):
+                return Markup(_drawn_in_line(figure.fitted(*_FIGURE_MM).bare_svg()))
+    return Markup("")
+
+
+def _drawn_in_line(svg: str) -> str:
+    """Return a drawing that takes the colours of the page around it."""
+    svg = _PAPER.sub("", _SIZE.sub(r"<svg", svg, count=1), count=1)
+    return svg.replace('"#000"', '"currentColor"').replace('"#fff"', '"var(--paper, #fff)"')
 
 
 def _group(site: Site, section: ChapterSection, lang: str) -> LessonGroup:
@@ -106,7 +151,7 @@ def _group(site: Site, section: ChapterSection, lang: str) -> LessonGroup:
         ExerciseEntry(name, exercise_title(site.course[name], lang), "new", state_text)
         for name in section.exercises
     )
-    return LessonGroup(title, bool(section.lesson), tuple(placed))
+    return LessonGroup(title, section.lesson, tuple(placed))
 
 
 def _entry(request: Request, new: ExerciseEntry, stand: ExerciseProgress | None) -> ExerciseEntry:
@@ -114,13 +159,14 @@ def _entry(request: Request, new: ExerciseEntry, stand: ExerciseProgress | None)
         return new
     name, title, texts = new.name, new.title, request.words["practice"]["states"]
     counts = {"right": stand.right, "of": stand.tried, "variants": stand.variants}
+    is_right = 0 < stand.tried == stand.right
     if stand.due is not None and stand.due <= request.received_at.date():
-        return ExerciseEntry(name, title, "due", texts["due"].format(**counts))
+        return ExerciseEntry(name, title, "due", texts["due"].format(**counts), is_right)
     if stand.due is not None:
         day = told_date(stand.due, request.lang)
-        return ExerciseEntry(name, title, "again", texts["again"].format(**counts, day=day))
-    state = "done" if stand.tried and stand.right == stand.tried else "begun"
-    return ExerciseEntry(name, title, state, texts[state].format(**counts))
+        return ExerciseEntry(name, title, "again", texts["again"].format(**counts, day=day), is_right)
+    state = "done" if is_right else "begun"
+    return ExerciseEntry(name, title, state, texts[state].format(**counts), is_right)
 
 
 def exercise_title(exercise: Any, lang: str) -> str:

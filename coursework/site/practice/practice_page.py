@@ -25,8 +25,9 @@ from coursework.site.frame.budgets import BOXES, PLAIN
 from coursework.site.frame.drafts import save_drafts
 from coursework.site.frame.requests import HTTPException, Request, Route
 from coursework.site.frame.responses import redirect
+from coursework.site.lessons.lesson_content import LessonLink, lesson_address
 from coursework.site.papers.assignment_state import to_hand_in
-from coursework.site.practice.contents import contents, exercise_title, next_of
+from coursework.site.practice.contents import ChapterEntry, contents, exercise_title, next_of
 from coursework.site.practice.worksheet import BOX_PREFIX, QuestionHints, Worksheet
 
 
@@ -188,7 +189,7 @@ def _page(
     names["hinted"] = {**names["hinted"], **(hinted or {})}
     for name in names["came"]:
         names["results"].setdefault(name, None)
-    return request.render("site/student/practice_sheet", **names, **_after(request, names["summary"]))
+    return request.render("site/student/practice_sheet", **names, **_after(request, work, names["summary"]))
 
 
 def _pieces(
@@ -207,7 +208,7 @@ def _pieces(
         summary=summary,
         focus=_focus(request, hinted),
         is_shown=work.attempt.is_example,
-        **_after(request, summary),
+        **_after(request, work, summary),
     )
 
 
@@ -219,15 +220,24 @@ def _focus(request: Request, hinted: dict[str, Any]) -> str:
     return f"told-{BOX_PREFIX}{checked}" if checked else "summary" if "check" in request.form.texts else ""
 
 
-def _after(request: Request, summary: dict[str, Any]) -> dict[str, Any]:
-    """Return the next step, if every question is answered."""
+class DoneExercise(NamedTuple):
+    """Exercise whose questions are all right: its title, the lesson that teaches it, and its chapter."""
+
+    title: str
+    lesson: LessonLink | None
+    chapter: ChapterEntry | None
+
+
+def _after(request: Request, work: Worksheet, summary: dict[str, Any]) -> dict[str, Any]:
+    """Return what was learned, and the next step, if every question is answered."""
     if not summary["is_done"]:
         return {"next": None}
-    return {
-        "next": next_of(
-            request, PersonProgress(request.site.store, request.user.id, request.site.clock).progress
-        )
-    }
+    progress = PersonProgress(request.site.store, request.user.id, request.site.clock).progress
+    chapters = contents(request, progress)
+    own = (c for c in chapters if any(entry.name == work.exercise for entry in c.exercises))
+    lesson = next((LessonLink(lesson_address(each.name), each.title) for each in work.lessons), None)
+    done = DoneExercise(work.variant.text.title, lesson, next(own, None))
+    return {"next": next_of(request, progress), "done": done}
 
 
 # ------------------------------------------------------------------- drafts

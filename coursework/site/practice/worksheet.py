@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from functools import cached_property
 from html import escape
@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from markupsafe import Markup
 
-from coursework.course.lessons import Lesson, taught_by
+from coursework.course.lessons import Lesson
 from coursework.database.drafts import DraftBox, drafts
 from coursework.database.permissions import Permission
 from coursework.database.progress import PersonProgress
@@ -35,6 +35,13 @@ from coursework.selfstudy.worked import theory
 from coursework.sheets.handout import handout
 from coursework.site.frame.drafts import LONGEST, draft_attributes, save_form_drafts, versions_of
 from coursework.site.frame.requests import HTTPException
+from coursework.site.lessons.lesson_content import (
+    LessonLink,
+    help_with_mistake,
+    lessons_for,
+    linked_lessons,
+    section_links,
+)
 
 if TYPE_CHECKING:
     from coursework.course.variant import Variant
@@ -53,6 +60,7 @@ class AnswerFeedback(NamedTuple):
     verdict: str  #: in a word or two; empty if the sentence suffices
     html: Markup
     is_right: bool = False
+    help: LessonLink | None = None  #: section of a lesson
 
 
 class QuestionHints(NamedTuple):
@@ -181,7 +189,7 @@ class Worksheet:
         html = self._with_buttons(markdown.html_inline(sentence, self.variant.lang), mark.part)
         says_all = mark.verdict in ("correct", "to_mark")
         word = "" if says_all else verdict_word(mark.verdict, self.variant.lang)
-        return AnswerFeedback(sign_of(mark), word, html, mark.verdict == "correct")
+        return AnswerFeedback(sign_of(mark), word, html, mark.verdict == "correct", self._help_with(mark))
 
     def results(self, checked: CheckedAnswers, contents: Mapping[str, str]) -> dict[str, AnswerFeedback]:
         """Return the feedback on the answers that are still in their boxes."""
@@ -365,18 +373,29 @@ class Worksheet:
             "summary": self.summary(checked, contents),
             "is_shown": self.attempt.is_example,
             "moves": self.variant.exercise.is_animated,
-            "lessons": self._lessons(),
+            "lessons": linked_lessons(self.request.site, self.exercise, self.variant.lang),
             "form": draft_attributes(
                 self.request, f"{self.address}/draft", self.name, self.drafts, BOX_PREFIX, **texts
             ),
         }
 
-    def _lessons(self) -> Sequence[Lesson]:
-        exercise, lang = self.variant.exercise, self.variant.lang
-        lessons: Sequence[Lesson] = self.request.site.cache.get(
-            ("lessons", self.exercise, lang), lambda: taught_by(exercise.folder, self.exercise, lang)
-        )
-        return lessons
+    @property
+    def lessons(self) -> tuple[Lesson, ...]:
+        """Lessons that teach the exercise."""
+        return lessons_for(self.request.site, self.exercise, self.variant.lang)
+
+    @property
+    def help_links(self) -> tuple[LessonLink, ...]:
+        """Links to the sections of the first of these lessons."""
+        return section_links(self.lessons[0]) if self.lessons else ()
+
+    def _help_with(self, mark: Mark) -> LessonLink | None:
+        """Return the section that explains the mistake of a wrong answer, or else the first that teaches the exercise."""
+        if mark.verdict in ("correct", "to_mark", "missing", "unreadable"):
+            return None
+        _, _, mistake = mark.verdict.partition("mistake:")
+        link = help_with_mistake(self.request.site, self.exercise, mistake, self.variant.lang)
+        return link or next(iter(self.help_links), None)
 
     def _hinted_before(self) -> Iterable[str]:
         happened = self.store.happened(self.variant.seed)

@@ -1,0 +1,171 @@
+"""Lessons: a page for each, in steps, whose worked examples have blanks that are marked."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import Any, NamedTuple
+
+from markupsafe import Markup
+from starlette.responses import Response
+
+from coursework.database.permissions import Permission
+from coursework.markup import markdown
+from coursework.rendering.lesson_steps import SteppedLesson
+from coursework.selfstudy.progress import is_blank
+from coursework.selfstudy.worked import BlankMark
+from coursework.sheets.book import BlanksPiece
+from coursework.site.frame.budgets import BOXES
+from coursework.site.frame.drafts import LONGEST
+from coursework.site.frame.requests import HTTPException, Request, Route
+from coursework.site.lessons.lesson_content import (
+    example_of,
+    exercises_of,
+    lesson_address,
+    lesson_lang,
+    lesson_of,
+)
+from coursework.site.practice.contents import exercise_title, titles
+
+_BOX = "blank-"  #: before the names of the boxes of blanks
+_YEAR = 365 * 24 * 3600
+
+
+class LessonExercise(NamedTuple):
+    """Exercise at the end of a lesson."""
+
+    name: str
+    title: str
+
+
+class CheckedBlank(NamedTuple):
+    """Mark of a blank, with the number of its question."""
+
+    number: int
+    mark: BlankMark
+    html: Markup
+
+
+def lesson(request: Request) -> Response:
+    """Return the page of a lesson; a form checks the blanks of one of its examples."""
+    name, opened = _opened(request)
+    checked: dict[int, list[CheckedBlank]] = {}
+    is_complete = False
+    if request.is_post:
+        number, blanks = _example(request, opened)
+        checked[number] = list(_checked(request, blanks))
+        is_complete = len(checked[number]) == len(blanks.questions) and all(
+            one.mark.is_right for one in checked[number]
+        )
+        if request.is_fragment:
+            return request.render(
+                "site/student/_lesson_checked", checked=checked[number], is_complete=is_complete
+            )
+    folder = request.site.course.folder
+    order = folder.lessons
+    after = order[order.index(name) + 1] if name != order[-1] else ""
+    return request.render(
+        "site/student/lesson",
+        lesson=opened,
+        name=name,
+        lesson_lang=lesson_lang(request.site, name, request.lang),
+        address=lesson_address(name),
+        number=1 + order.index(name),
+        chapter=next((c for c in titles(request.site, request.lang) if _has(c, name)), None),
+        exercises=_exercises(request, name),
+        after=_after(request, after),
+        box=_BOX,
+        typed={box: texts[0] for box, texts in request.form.texts.items() if texts},
+        ticked=request.form.texts,
+        checked=checked,
+        checked_example=next(iter(checked), 0),
+        checked_complete=is_complete,
+    )
+
+
+def _has(chapter: Any, lesson_name: str) -> bool:
+    return any(group.lesson == lesson_name for group in chapter.groups)
+
+
+def _opened(request: Request) -> tuple[str, SteppedLesson]:
+    """Return the lesson of the address.
+
+    Raises
+    ------
+    HTTPException
+        There is none.
+    """
+    name = str(request.path_params["lesson"])
+    if name not in request.site.course.folder.lessons:
+        raise HTTPException("page", 404)
+    return name, lesson_of(request.site, name, lesson_lang(request.site, name, request.lang))
+
+
+def _exercises(request: Request, name: str) -> list[LessonExercise]:
+    lang = lesson_lang(request.site, name, request.lang)
+    course = request.site.course
+    return [
+        LessonExercise(each, exercise_title(course[each], request.lang))
+        for each in exercises_of(request.site, name, lang)
+    ]
+
+
+def _after(request: Request, name: str) -> tuple[str, str] | None:
+    """Return the address and the title of the next lesson; None after the last."""
+    groups = (group for chapter in titles(request.site, request.lang) for group in chapter.groups)
+    title = next((group.title for group in groups if group.lesson == name), name)
+    return (lesson_address(name), title) if name else None
+
+
+# -------------------------------------------------------------------- blanks
+
+
+def _example(request: Request, opened: SteppedLesson) -> tuple[int, BlanksPiece]:
+    """Return the blanks that a form fills in, with the number of their step.
+
+    Raises
+    ------
+    HTTPException
+        The step has no blanks: nothing but the lesson says which variant is marked.
+    """
+    stated = request.form.text("example")
+    number = int(stated) if stated.isdecimal() and len(stated) < 6 else 0
+    blanks = opened.steps[number - 1].blanks if 0 < number <= len(opened.steps) else None
+    if blanks is None:
+        raise HTTPException("bad_request", 400)
+    return number, blanks
+
+
+def _checked(request: Request, blanks: BlanksPiece) -> Iterator[CheckedBlank]:
+    name = str(request.path_params["lesson"])
+    example = example_of(request.site, blanks, lesson_lang(request.site, name, request.lang))
+    texts: Mapping[str, str] = {
+        key: ", ".join(request.form.texts.get(f"{_BOX}{key}", ()))[:LONGEST] for _, key, _ in blanks.questions
+    }
+    marks = example.marks({key: text for key, text in texts.items() if not is_blank(text)})
+    for place, key, _ in blanks.questions:
+        if key in marks:
+            html = markdown.html_inline(marks[key].sentence, example.lang)
+            yield CheckedBlank(place, marks[key], Markup(html))
+
+
+# ------------------------------------------------------------------- drawings
+
+
+def figure(request: Request) -> Response:
+    """Return a drawing of a lesson; its name changes with its content."""
+    name, wanted = str(request.path_params["lesson"]), str(request.path_params["figure"])
+    folder = request.site.course.folder
+    if name not in folder.lessons:
+        raise HTTPException("page", 404)
+    langs = dict.fromkeys(lesson_lang(request.site, name, lang) for lang in (request.lang, *folder.languages))
+    for lang in langs:
+        if (svg := lesson_of(request.site, name, lang).figures.get(wanted)) is not None:
+            headers = {"cache-control": f"private, max-age={_YEAR}, immutable"}
+            return Response(svg, headers=headers, media_type="image/svg+xml; charset=utf-8")
+    raise HTTPException("page", 404)
+
+
+ROUTES = (
+    Route("/lessons/{lesson}", lesson, Permission.OWN, takes_forms=True, budget=BOXES),
+    Route("/lessons/{lesson}/figures/{figure}", figure, Permission.OWN),
+)

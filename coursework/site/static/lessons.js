@@ -1,0 +1,78 @@
+// A lesson in steps on a narrow screen, and the place where one stopped, which the course page shows. Each step has its address.
+(function () {
+  "use strict";
+  const key = (name) => "lesson " + (document.body.dataset.person || "") + " " + name;
+  const place = (name) => {
+    try { return JSON.parse(localStorage.getItem(key(name))) || null; } catch { return null; }
+  };
+  const keep = (name, step, of) => {
+    try { localStorage.setItem(key(name), JSON.stringify({ step: step, of: of })); } catch { /* a browser that stores nothing */ }
+  };
+  const words = (text, ...values) => text.replace(/\{(\d)\}/g, (_, k) => values[k]);
+
+  for (const link of document.querySelectorAll("a[data-place-of]")) {
+    const stopped = place(link.dataset.placeOf);
+    if (!stopped || stopped.step < 2) continue;
+    link.hash = "step-" + stopped.step;
+    link.nextElementSibling.textContent = words(link.dataset.words, stopped.step, stopped.of);
+  }
+
+  const lesson = document.getElementById("lesson");
+  if (!lesson) return;
+  const steps = Array.from(lesson.querySelectorAll(".step"));
+  const bar = lesson.querySelector(".lesson-bar"), name = lesson.dataset.lesson;
+  const narrow = matchMedia("(max-width: 46rem)");
+  let current = 0;
+
+  // The step of an address: its own, or that of the heading or the word it names.
+  function named(hash) {
+    const target = hash && document.getElementById(decodeURIComponent(hash.slice(1)));
+    return target ? steps.indexOf(target.closest(".step")) : -1;
+  }
+
+  function show(k, isFirst) {
+    current = k;
+    steps.forEach((step, j) => step.classList.toggle("shown", j === k));
+    lesson.classList.toggle("at-start", k === 0);
+    for (const link of bar.querySelectorAll("[data-go]")) {
+      const to = k + Number(link.dataset.go);
+      link.hash = "step-" + (to + 1);
+      const isOut = to < 0 || to >= steps.length;
+      link.setAttribute("aria-disabled", String(isOut));
+      link.tabIndex = isOut ? -1 : 0;
+    }
+    bar.querySelector("progress").value = k + 1;
+    bar.querySelector("[data-place]").textContent = words(lesson.dataset.stepOf, k + 1, steps.length);
+    keep(name, k + 1, steps.length);
+    for (const image of steps[k + 1] ? steps[k + 1].querySelectorAll("img[loading]") : []) image.loading = "eager";
+    if (isFirst || !narrow.matches) return;
+    steps[k].focus({ preventScroll: true });
+    scrollTo(0, k === 0 ? 0 : lesson.getBoundingClientRect().top + scrollY - 8);
+  }
+
+  addEventListener("hashchange", () => {
+    const k = named(location.hash);
+    if (k >= 0) show(k, false);
+  });
+  if (matchMedia("(min-width: 76rem)").matches) lesson.querySelector(".lesson-contents").open = true;
+  for (const failure of ["htmx:sendError", "htmx:responseError"]) {
+    lesson.addEventListener(failure, (event) => { event.detail.target.textContent = lesson.dataset.notChecked; });
+  }
+
+  const asked = named(location.hash), stopped = place(name);
+  const first = asked >= 0 ? asked : narrow.matches && stopped ? Math.min(Math.max(stopped.step, 1), steps.length) - 1 : 0;
+  lesson.classList.add("stepped");
+  bar.hidden = false;
+  if (asked < 0 && first > 0) history.replaceState(null, "", "#step-" + (first + 1));
+  const before = place(name);
+  show(first, true);
+  if (narrow.matches && first > 0) scrollTo(0, lesson.getBoundingClientRect().top + scrollY - 8);
+  if (narrow.matches) return;
+  // On a wide screen the whole lesson stands there: the place is the step that is read.
+  if (before) keep(name, before.step, before.of);
+  const seen = new IntersectionObserver((entries) => {
+    const read = entries.filter((entry) => entry.isIntersecting).map((entry) => steps.indexOf(entry.target));
+    if (read.length && scrollY > 0 && !narrow.matches) keep(name, Math.max(...read) + 1, steps.length);
+  }, { rootMargin: "0px 0px -60% 0px" });
+  steps.forEach((step) => seen.observe(step));
+})();

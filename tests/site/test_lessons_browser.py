@@ -1,0 +1,124 @@
+"""Lessons in Chromium: step by step by touch to an exercise, back to the place, blanks that are marked, the whole page without a script."""
+
+import pytest
+from site_browser import chromium, context_of, cut_in_print, low, serious, served, too_wide, watched
+from site_people import ZOE, Class
+
+from coursework.site.lessons.lesson_content import lesson_of
+
+pytestmark = pytest.mark.e2e
+
+LESSON = "mobility_and_groups"  #: one that is short
+
+
+@pytest.fixture(scope="module")
+def desk(tmp_path_factory):
+    """A site behind a server, and a browser."""
+    class_ = Class(f"sqlite:///{tmp_path_factory.mktemp('site')}/site.db")
+    with served(class_) as address, chromium() as browser:
+        yield class_, address, browser
+
+
+@pytest.fixture
+def window(desk):
+    """Makes windows of Zoé."""
+    class_, address, browser = desk
+    opened = []
+
+    def open_(place, **how):
+        context = context_of(browser, class_, address, ZOE, **how)
+        opened.append(context)
+        page = context.new_page()
+        page.goto(f"{address}{place}")
+        return page
+
+    yield open_
+    for context in opened:
+        context.close()
+
+
+def shown(page):
+    """The steps that stand on the screen."""
+    steps = page.locator(".step").all()
+    return [step.get_attribute("id") for step in steps if step.is_visible()]
+
+
+def test_a_lesson_is_read_by_touch_to_its_exercise_and_goes_on_where_one_stopped(window, desk):
+    page = window("/practice")
+    wrong = watched(page)
+    page.locator("#chapter-1 summary").tap()
+    page.locator(f"a[data-place-of={LESSON}]").tap()
+    page.wait_for_url(f"**/lessons/{LESSON}")
+    count = page.locator(".step").count()
+    assert shown(page) == ["step-1"]
+    for number in range(2, 6):
+        page.locator("[data-go='1']").tap()
+        page.wait_for_url(f"**#step-{number}")
+        assert shown(page) == [f"step-{number}"]
+        assert (too_wide(page), low(page)) == (0, [])
+    page.locator("[data-go='-1']").tap()
+    page.wait_for_url("**#step-4")
+    page.go_back()
+    page.wait_for_url("**#step-5")
+    assert serious(page) == []
+    page.goto(f"{desk[1]}/practice")
+    page.locator("#chapter-1 summary").tap()
+    place = page.locator(f"a[data-place-of={LESSON}]")
+    assert f"Step 5 of {count}" in place.locator("xpath=..").inner_text()
+    place.tap()
+    page.wait_for_url(f"**/lessons/{LESSON}#step-5")
+    assert shown(page) == ["step-5"]
+    page.goto("about:blank")
+    page.goto(f"{desk[1]}/lessons/{LESSON}")
+    assert shown(page) == ["step-5"]
+    page.evaluate("location.hash = 'section-4'")
+    page.wait_for_function("document.querySelector('.step.shown #section-4')")
+    page.evaluate(f"location.hash = 'step-{count}'")
+    page.wait_for_function(f"document.querySelector('#step-{count}.shown')")
+    assert serious(page) == []
+    page.locator(".lesson-end a[href='/practice/joint_graph']").tap()
+    page.wait_for_url("**/practice/joint_graph/*")
+    assert wrong == []
+
+
+def test_a_link_to_a_section_opens_its_step(window):
+    page = window(f"/lessons/{LESSON}#section-6")
+    [step] = shown(page)
+    assert page.locator(f"#{step} #section-6").is_visible()
+
+
+def test_a_blank_is_marked_in_its_place(window, desk):
+    class_, _, _ = desk
+    lesson = lesson_of(class_.site, LESSON, "en")
+    number = next(k for k, step in enumerate(lesson.steps, 1) if step.blanks)
+    page = window(f"/lessons/{LESSON}#step-{number}")
+    form = page.locator(f"#step-{number} form.blanks")
+    form.locator("button").tap()
+    form.locator(".told p").wait_for()
+    assert "Write an answer first." in form.locator(".told").inner_text()
+    assert page.url.endswith(f"#step-{number}")
+    assert serious(page) == []
+    page.route("**/lessons/*", lambda route: route.abort())
+    form.locator("button").tap()
+    page.wait_for_function(
+        "t => document.querySelector(t).innerText.includes('Nothing was checked')", arg=f"#checked-{number}"
+    )
+    page.set_viewport_size({"width": 320, "height": 568})
+    assert too_wide(page) == 0
+
+
+@pytest.mark.parametrize(("size", "script"), [("telephone", False), ("desk", True)])
+def test_without_a_script_and_on_a_desk_a_lesson_is_one_page(window, size, script):
+    page = window(f"/lessons/{LESSON}", size=size, script=script)
+    assert len(shown(page)) == page.locator(".step").count()
+    assert not page.locator(".lesson-bar").is_visible()
+    if script:
+        assert (too_wide(page), serious(page)) == (0, [])
+        assert cut_in_print(page)[1] == []
+
+
+@pytest.mark.parametrize("size", ["telephone", "desk"])
+def test_the_course_page_fits_its_screen(window, size):
+    page = window("/practice", size=size, lang="fr")
+    page.locator("#chapter-2 summary").click()
+    assert (too_wide(page), serious(page), low(page)) == (0, [], [])
