@@ -37,6 +37,7 @@ _UNSEEN = re.compile(r"\]\([^)]*\)|\\[a-zA-Z]+|[][${}*_^\\]")  #: marks of Markd
 _FENCE = re.compile(r"^```", re.MULTILINE)
 _IMAGE = re.compile(r'<img src="data:image/svg\+xml;base64,([^"]*)"')
 _SIZE = re.compile(r'<svg[^>]*? viewBox="[-\d.]+ [-\d.]+ ([\d.]+) ([\d.]+)"')
+_MOTION = re.compile(rb"<animate[^>]*/>")
 _PIXELS = 3.78  #: of a millimetre
 
 
@@ -94,15 +95,22 @@ def stepped(
 def _with_files(html: str, files: dict[str, bytes], address: str) -> str:
     """Return HTML whose drawings are files, named by their content, which browsers fetch as they come into sight."""
 
-    def write(image: re.Match[str]) -> str:
-        svg = base64.b64decode(image[1])
+    def put(svg: bytes) -> str:
         name = f"{sha256(svg).hexdigest()[:16]}.svg"
         files[name] = svg
+        return name
+
+    def write(image: re.Match[str]) -> str:
+        svg = base64.b64decode(image[1])
+        name = put(svg)
         size = _SIZE.search(svg.decode())
         room = "".join(
             f' {side}="{float(length) * _PIXELS:.0f}"'
             for side, length in zip(("width", "height"), size.groups() if size else (), strict=False)
         )
+        still = _MOTION.sub(b"", svg)
+        if still != svg:  # what moves by itself can be stopped
+            room += f' data-still="{address}/{put(still)}"'
         return f'<img src="{address}/{name}" loading="lazy"{room}'
 
     return _IMAGE.sub(write, html)

@@ -21,6 +21,7 @@ from coursework.rendering.html import environment_of
 from coursework.rendering.lesson_steps import stepped, steps
 from coursework.selfstudy.workbook.lessons import explained_mistakes, lesson_text
 from coursework.sheets.book import BlanksPiece, HeadPiece, LaterPiece, ProsePiece
+from coursework.site import warming
 from coursework.site.lessons import lesson_content
 
 LESSON = "positions"
@@ -69,6 +70,12 @@ def test_a_lesson_in_steps_says_all_that_its_book_page_says_and_leads_somewhere(
         assert f"section-{number}" in ids
     for file in re.findall(r'src="/figures/([^"]+)"', html):
         assert lesson.figures[file].startswith(b"<svg")
+    moving = [
+        file for file in re.findall(r'src="/figures/([^"]+)"', html) if b"<animate" in lesson.figures[file]
+    ]
+    stills = re.findall(r'data-still="/figures/([^"]+)"', html)
+    assert len(stills) == len(moving)
+    assert not [file for file in stills if b"<animate" in lesson.figures[file]]
     assert "data:image" not in html
 
 
@@ -130,6 +137,18 @@ def test_a_lesson_is_rendered_once_however_many_ask_at_once(tmp_path, monkeypatc
     for thread in threads:
         thread.join()
     assert made == [(LESSON, "en")] * 2  # the fault, and once more for all
+
+
+@each_row("has_worker", [True, False])
+def test_lessons_are_ready_ahead_where_a_worker_marks(class_, monkeypatch, has_worker):
+    monkeypatch.setattr(class_.site, "has_worker", has_worker)
+    made = []
+    monkeypatch.setattr(warming, "lesson_of", lambda site, name, lang: made.append((name, lang)))
+    for piece in warming._pieces(class_.site):
+        if piece.func is warming.lesson_of:
+            piece()
+    every = {(name, lang) for name in COURSE.folder.lessons for lang in COURSE.folder.languages}
+    assert set(made) == (every if has_worker else set())
 
 
 # ------------------------------------------------------------------- blanks of examples

@@ -87,6 +87,18 @@ def test_a_link_to_a_section_opens_its_step(window):
     assert page.locator(f"#{step} #section-6").is_visible()
 
 
+def test_what_moves_can_be_stopped(window):
+    page = window("/lessons/plane_mechanisms", size="desk")
+    button = page.locator("figure:has(img[data-still]) button").first
+    image = page.locator("figure img[data-still]").first
+    moving = image.get_attribute("src")
+    button.click()
+    assert image.get_attribute("src") == image.get_attribute("data-still") != moving
+    assert button.inner_text() == "Let it move"
+    button.click()
+    assert page.evaluate("path => document.querySelector('img[data-still]').src.endsWith(path)", moving)
+
+
 def test_a_blank_is_marked_in_its_place(window, desk):
     class_, _, _ = desk
     lesson = lesson_of(class_.site, LESSON, "en")

@@ -55,6 +55,20 @@
     if (k >= 0) show(k, false);
   });
   if (matchMedia("(min-width: 76rem)").matches) lesson.querySelector(".lesson-contents").open = true;
+  // What moves by itself can be stopped; where no motion is wanted it stands still by itself.
+  const isStill = matchMedia("(prefers-reduced-motion: reduce)").matches;
+  for (const image of isStill ? [] : lesson.querySelectorAll("img[data-still]")) {
+    const button = document.createElement("button"), moving = image.src;
+    button.type = "button";
+    button.className = "stop";
+    button.textContent = lesson.dataset.stop;
+    button.addEventListener("click", () => {
+      const stops = image.src === moving;
+      image.src = stops ? image.dataset.still : moving;
+      button.textContent = stops ? lesson.dataset.play : lesson.dataset.stop;
+    });
+    image.after(button);
+  }
   for (const failure of ["htmx:sendError", "htmx:responseError"]) {
     lesson.addEventListener(failure, (event) => { event.detail.target.textContent = lesson.dataset.notChecked; });
   }
