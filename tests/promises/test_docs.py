@@ -384,7 +384,7 @@ def test_the_assignment_that_is_shown_is_one_of_the_course(tmp_path):
     shown = re.sub("(?m)^secret = .*\n", "", shown)
     (tmp_path / "midterm.toml").write_text(shown, "utf-8")
     assignment = read_assignment(tmp_path / "midterm.toml", COURSE)
-    assert set(assignment.names) == {"slotted_mechanism", "vocabulary", "grashof"}
+    assert set(assignment.names) == {"slotted_mechanism", "vocabulary", "four_bar_motion", "grashof"}
     table = (DOCS / "assignments.md").read_text("utf-8")
     for key in [
         *OPTIONS,
