@@ -50,6 +50,7 @@ _MARGIN = 1.5
 _ROW = 6.0  #: height of a line of the legend, mm
 _SYMBOLS = complex(26, 24)  #: paper that symbols and labels take round the mechanism, mm
 _ARC_SIDES = 20
+_STRAIGHT = 0.015  #: how far from its path a point is drawn at most, mm on paper
 _RIM = 30  #: white round letters, hundredths of their size
 
 
@@ -105,11 +106,12 @@ class Arrow:
 
 @dataclass(frozen=True)
 class TracedPoint:
-    """Point over the instants, and its path; ``closed`` if the path returns to its start."""
+    """Point over the instants, and its ``path``, at as many places as it needs; ``closed`` if that returns to its start."""
 
     p: np.ndarray
     point: str
     closed: bool
+    path: np.ndarray
 
 
 @dataclass(frozen=True)
@@ -128,6 +130,12 @@ class MovingDrawing:
     tracks: tuple[MotionTrack, ...]
     size: tuple[float, float]
     scale: float
+    corner: complex = 0j  #: top left corner, mm on paper from the origin of the mechanism, y up
+
+    def on_paper(self, p: np.ndarray) -> np.ndarray:
+        """Return points of the mechanism (mm, complex, shape ``(...)``) as x, y in the drawing, mm, y down: ``(..., 2)``."""
+        off = np.asarray(p) * self.scale - self.corner
+        return np.stack([off.real, -off.imag], axis=-1)
 
 
 class _Stage(FigurePaper):
@@ -196,7 +204,7 @@ def drawing(
     WrongValue
         The elements have no extent, or no element in common.
     """
-    frames = _settled(_common(frames))
+    frames = _settled(matched(frames))
     if not frames[0]:
         raise WrongValue("no element of the figure is there at every instant, so nothing can be moved")
     low, high = extent(frames, arrows, spots)
@@ -215,7 +223,7 @@ def extent(
 ) -> tuple[complex, complex]:
     """Return the corners of all that is visible at some instant, mm of mechanism."""
     points = [np.array([z for elements in frames for e in elements for z in e.reach()])]
-    points += [spot.p for spot in spots] + [arrow.p + arrow.v for arrow in arrows]
+    points += [spot.path for spot in spots] + [arrow.p + arrow.v for arrow in arrows]
     seen = np.concatenate(points)
     seen = seen[np.isfinite(seen)]
     low, high = complex(seen.real.min(), seen.imag.min()), complex(seen.real.max(), seen.imag.max())
@@ -224,7 +232,7 @@ def extent(
     return low, high
 
 
-def _common(frames: Frames) -> list[list[Element]]:
+def matched(frames: Frames) -> list[list[Element]]:
     """Return the elements present at every instant, matched by kind, label and rank among equals."""
     keyed = [_by_kind(elements) for elements in frames]
     common = [key for key in keyed[0] if all(key in item for item in keyed)]
@@ -354,8 +362,9 @@ def _spot_tracks(spot: TracedPoint, scale: float) -> list[MotionTrack]:
     """Return the path of a point, under the links, and its dot, on them."""
     colour, count = COLOURS["position"], len(spot.p)
     direction = spot.p * scale
+    line = spot.path[_corners(spot.path, _STRAIGHT / scale)] * scale
     path = MotionTrack(
-        np.repeat(_flat(direction[None]), count, axis=0),
+        np.repeat(_flat(line[None]), count, axis=0),
         f' stroke="{colour}"{_paint(0.25, "none")}',
         spot.closed,
         layer=FILLS,
@@ -367,6 +376,23 @@ def _spot_tracks(spot: TracedPoint, scale: float) -> list[MotionTrack]:
         path,
         MotionTrack(_flat(direction[:, None]), mark=dot, layer=PINS, effect="position", point=spot.point),
     ]
+
+
+def _corners(path: np.ndarray, allowed: float) -> np.ndarray:
+    """Return the indices of those points that a line needs, in order: no other lies farther from it than allowed."""
+    needed, spans = {0, len(path) - 1}, [(0, len(path) - 1)]
+    while spans:
+        start, end = spans.pop()
+        if end - start < 2:
+            continue
+        chord, off = path[end] - path[start], path[start + 1 : end] - path[start]
+        along = np.clip((off * chord.conjugate()).real / (abs(chord) ** 2 or 1.0), 0.0, 1.0)
+        away = abs(off - along * chord)
+        if away.max() > allowed:
+            middle = start + 1 + int(away.argmax())
+            needed.add(middle)
+            spans += [(start, middle), (middle, end)]
+    return np.array(sorted(needed))
 
 
 def _arrow_tracks(arrow: Arrow, scale: float) -> list[MotionTrack]:
@@ -454,7 +480,8 @@ def _framed(tracks: Sequence[MotionTrack], keys: Sequence[LegendKey], scale: flo
         legend += _key_tracks(key, count, corner, indent, scale)
     height = rounded(top - bottom + _ROW * len(keys), 1)
     flip = [replace(t, numbers=_downwards(t.numbers, left, top)) for t in [*tracks, *legend]]
-    return MovingDrawing(tuple(sorted(flip, key=lambda t: t.layer)), (width, height), scale)
+    tracks = sorted(flip, key=lambda t: t.layer)
+    return MovingDrawing(tuple(tracks), (width, height), scale, complex(left, top))
 
 
 def _downwards(numbers: np.ndarray, left: float, top: float) -> np.ndarray:

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from markupsafe import Markup
 
-from coursework.figures.moving import COLOURS, MotionTrack
+from coursework.figures.moving import COLOURS, MotionTrack, MovingDrawing
 from coursework.language.numbers import localise, rounded, significant
 from coursework.language.words import words
 from coursework.rendering.environment import render
@@ -33,25 +33,35 @@ def page(folders: Sequence[Path], animation: Animation, paper: str = "a4") -> st
     return render(environment_of(tuple(folders), variant.lang), "motion/motion.html.j2", names)
 
 
-def context(animation: Animation, *, is_described: bool = True) -> dict[str, Any]:
-    """Return the names that ``motion/_body.html.j2`` sees; the numbers beside the drawing only where they are to be ``is_described``."""
+def context(animation: Animation, *, is_answered: bool = True) -> dict[str, Any]:
+    """Return the names that ``motion/_body.html.j2`` sees.
+
+    Before its questions are answered, a variant moves as its figure does and nothing more: no paths, vectors and values,
+    no driving angle that is an answer, and places to the tenth of a millimetre on paper, as one measures them.
+    """
     variant = animation.variant
     lang = variant.lang
-    drawing = animation.drawing(animation.available)
+    available = animation.available if is_answered else ()
+    drawing = animation.drawing(available)
     first = animation.first
     film = animation.film is not None
-    turned = animation.angles if film else animation.angles % 360.0
+    is_told = is_answered or animation.driver in variant.given
+    degrees = animation.angles if is_told else np.round(animation.angles - animation.angles[first])
+    turned = degrees if film or not is_told else degrees % 360.0
     angles = [f"{localise(significant(a, 5), lang)}°" for a in turned]
-    readings = animation.readings if is_described else ()
+    readings = animation.readings if is_answered else ()
+    decimals = 2 if is_answered else 1
     data = {
-        "tracks": [_numbers(track) for track in drawing.tracks if track.moves],
+        "tracks": [_numbers(track, decimals) for track in drawing.tracks if track.moves],
+        "crank": _crank(animation, drawing, decimals),
         "order": list(animation.order),
         "times": [rounded(float(t), 6) for t in animation.times],
         "seconds": animation.seconds,
         "first": first,
         "angles": angles,
         "film": film,
-        "degrees": [rounded(float(a), 4) for a in animation.angles],
+        "closed": animation.closed,
+        "degrees": [rounded(float(a), 4) for a in degrees],
         "readings": [list(reading.values) for reading in readings],
     }
     texts = words(lang)
@@ -59,8 +69,10 @@ def context(animation: Animation, *, is_described: bool = True) -> dict[str, Any
         "words": texts,
         "said": texts["motion"],
         "drawing": Markup(_svg(drawing.tracks, drawing.size, first, animation)),
-        "effects": [(e, e in animation.effects, COLOURS[e]) for e in animation.available],
-        "points": list(animation.points),
+        "effects": [(e, e in animation.effects, COLOURS[e]) for e in available],
+        "points": list(animation.points) if is_answered else [],
+        "is_answered": is_answered,
+        "is_told": is_told,
         "readings": readings,
         "driver": variant.exercise.symbol(animation.driver),
         "count": len(animation.angles),
@@ -69,13 +81,25 @@ def context(animation: Animation, *, is_described: bool = True) -> dict[str, Any
         "start": texts["motion"]["film" if film else "statement"],
         "swings": not animation.turns,
         "turns": localise(significant(float(np.ptp(animation.angles)) / 360.0, 3), lang) if film else "",
-        "has_vectors": bool(animation.scales),
+        "has_vectors": is_answered and bool(animation.scales),
         "data": in_script(data),
     }
 
 
-def _numbers(track: MotionTrack) -> dict[str, Any]:
-    rows = [[rounded(float(x), 2) for x in row] for row in track.numbers]
+def _crank(animation: Animation, drawing: MovingDrawing, decimals: int) -> dict[str, Any] | None:
+    """Return pivot and handle of the driver on paper, by which a figure is dragged."""
+    if animation.crank is None:
+        return None
+    pivot, way = (drawing.on_paper(p) for p in animation.crank)
+    return {"pivot": _rounded(pivot, decimals), "rows": [_rounded(row, decimals) for row in way]}
+
+
+def _rounded(row: np.ndarray, decimals: int) -> list[float]:
+    return [rounded(float(x), decimals) for x in row]
+
+
+def _numbers(track: MotionTrack, decimals: int) -> dict[str, Any]:
+    rows = [_rounded(row, decimals) for row in track.numbers]
     return {"mark": bool(track.mark), "closed": track.closed, "rows": rows}
 
 
@@ -92,6 +116,8 @@ def _svg(tracks: Sequence[MotionTrack], size: tuple[float, float], first: int, a
             more += f' data-key="{track.effect}"' + ("" if on else ' style="opacity:.3"')
         elif track.effect:
             more += f' data-effect="{track.effect}"' + ("" if on else ' style="display:none"')
+        if track.is_label:
+            more += " data-label"
         if track.point:
             more += f' data-point="{escape(track.point)}"'
         lines.append(track.svg(first, more))

@@ -15,7 +15,6 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -24,7 +23,7 @@ from coursework.errors import WrongValue, unknown
 from coursework.figures.base import Element
 from coursework.figures.elements import bar
 from coursework.figures.marks import angle_mark, dimension, line
-from coursework.figures.moving import PAPER_MM, Arrow, LegendKey, MovingDrawing, TracedPoint, drawing, extent
+from coursework.figures.moving import PAPER_MM, Arrow, LegendKey, MovingDrawing, TracedPoint, drawing, extent, matched
 from coursework.figures.moving_svg import moving_svg, still_svgs
 from coursework.language.numbers import unit_text
 from coursework.language.words import words
@@ -34,10 +33,8 @@ from coursework.scenes.reel import Reel
 from coursework.scenes.scenes import Scene
 from coursework.solution import Moving
 
-if TYPE_CHECKING:
-    pass
 
-
+_FINER = 8  #: steps of a path for one of the instants
 _LONGEST = 0.3  #: of the longest vector, over the size of the mechanism
 
 
@@ -80,18 +77,49 @@ class Animation(Reel):
 
     @cached_property
     def points(self) -> Mapping[str, Moving]:
-        """Points that the solution states, over the instants."""
-        exercise = self.variant.exercise
-        if exercise.solution.motion is None:
-            return self._of_mechanism if exercise.solution.mechanism is not None else {}
-        result = self._stated("motion", exercise.solution.motion, self._with_driver_at(self.angles))
-        return {name: point.over(len(self.angles)) for name, point in result.items()}
+        """Points over the instants: of those that the solution states, the ones that the figure names; in a film, whose
+        words name them, all."""
+        return self._points_at(self.angles)
 
-    @property
-    def _of_mechanism(self) -> Mapping[str, Moving]:
-        """The moving points of the mechanism that the solution states."""
-        scene = Scene(self.variant.exercise, self.variant.given)
-        return scene.moving_points(self.angles)
+    def _points_at(self, angles: np.ndarray) -> Mapping[str, Moving]:
+        solution = self.variant.exercise.solution
+        if solution.motion is not None:
+            stated = self._stated("motion", solution.motion, self._with_driver_at(angles))
+            moving = {name: point.over(len(angles)) for name, point in stated.items()}
+        elif solution.mechanism is not None:
+            moving = Scene(self.variant.exercise, self.variant.given).moving_points(angles)
+        else:
+            moving = {}
+        named = {getattr(element, "label", "") for element in self.frames[self.first]}
+        return {n: point for n, point in moving.items() if self.film is not None or n in named}
+
+    @cached_property
+    def _paths(self) -> Mapping[str, np.ndarray]:
+        """Ways of the points, at finer steps than the instants."""
+        stops = np.append(self.angles, self.angles[0] + 360.0) if self.closed else self.angles
+        fine = np.interp(np.arange((len(stops) - 1) * _FINER + 1) / _FINER, np.arange(len(stops)), stops)
+        return {name: point.position for name, point in self._points_at(fine).items()}
+
+    @cached_property
+    def crank(self) -> tuple[complex, np.ndarray] | None:
+        """Pivot of the driver, and a point that turns with it at every instant, mm; None where the figure draws none.
+
+        A named point comes before another, and one farther from the pivot before a nearer.
+        """
+        named = [point.position for point in self.points.values()]
+        turned = np.exp(1j * np.radians(self.angles))
+        for ways in (named, self._drawn_points()):
+            arms = [(abs(arm), pivot, way) for way in ways for pivot, arm in [_turning(way, turned)] if arm]
+            if arms:
+                _, pivot, way = max(arms, key=lambda item: item[0])
+                return pivot, way
+        return None
+
+    def _drawn_points(self) -> list[np.ndarray]:
+        """Return the points of what is drawn at every instant, each over the instants, mm, shape ``(n,)``."""
+        columns = zip(*matched(self.frames), strict=True)
+        reaches = ([element.reach() for element in column] for column in columns)
+        return [np.array(way) for reach in reaches if len({*map(len, reach)}) == 1 for way in zip(*reach, strict=True)]
 
     @cached_property
     def readings(self) -> tuple[Gauge, ...]:
@@ -154,7 +182,10 @@ class Animation(Reel):
                 displayed[self._inside] = v[self._inside] / self.scales[effect]
                 arrows.append(Arrow(self.points[name].position, displayed, effect, name))
         if "position" in effects:
-            spots = [TracedPoint(point.position, name, self.closed) for name, point in self.points.items()]
+            spots = [
+                TracedPoint(point.position, name, self.closed, self._paths[name])
+                for name, point in self.points.items()
+            ]
         keys = self._keys({a.effect for a in arrows})
         return drawing(
             frames or self.frames,
@@ -216,10 +247,18 @@ class Animation(Reel):
         Letters of lengths and angles are left out, since the box has no room for them.
         """
         frames = [_without_sizes(frame) for frame in self.frames]
-        displayed, instants = self.drawing(self.effects, paper_mm, frames), len(self.angles)
-        turned = [(self.first + round(k * instants / count)) % instants for k in range(count)]
+        displayed = self.drawing(self.effects, paper_mm, frames)
+        turned = [self._instant_after(k / count) for k in range(count)]
         text = {"title": self.title, "words": self.words, "lang": self.variant.lang}
         return still_svgs(displayed, turned, **text)
+
+    def _instant_after(self, share: float) -> int:
+        """Return the instant nearest to a share of the cycle after the first."""
+        count = len(self.angles)
+        if not self.closed:
+            return (self.first + round(share * count)) % count
+        away = (self.angles - self.angles[self.first] - 360.0 * share + 180.0) % 360.0 - 180.0
+        return int(np.abs(away).argmin())
 
     def _key_times(self) -> str:
         """Return the times as SVG key times; empty when they are evenly spread."""
@@ -241,6 +280,18 @@ def _without_sizes(frame: Sequence[Element]) -> tuple[Element, ...]:
         else item
         for item in stored
     )
+
+
+def _turning(way: np.ndarray, turned: np.ndarray) -> tuple[complex, complex]:
+    """Return centre and arm of a point that turns with a body, by least squares; an arm of 0 where it does not.
+
+    ``turned`` are the body's directions over the instants, unit complex numbers, shape ``(n,)`` as ``way``, mm.
+    """
+    around = np.stack([np.ones_like(turned), turned], axis=-1)
+    pivot, arm = np.linalg.lstsq(around, way, rcond=None)[0]
+    size = abs(way - way.mean()).max()
+    turns = abs(around @ np.array([pivot, arm]) - way).max() < 1e-6 * size
+    return complex(pivot), complex(arm) if turns else 0j
 
 
 def _round_below(value: float) -> float:

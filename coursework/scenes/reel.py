@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from functools import cached_property
+from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -13,6 +14,7 @@ from coursework.course.variant import Variant
 from coursework.degrees import wrap
 from coursework.errors import BadCourse, CannotAssemble, Undefined, WrongValue
 from coursework.figures.figure import Figure
+from coursework.figures.moving import extent
 from coursework.model import Driver
 from coursework.quantities.graph import Graph
 from coursework.solution import Film
@@ -22,6 +24,8 @@ if TYPE_CHECKING:
 
 SECONDS = 6.0  #: how long a turn of the driver, or a swing, lasts on the screen
 MOST_TURNS = 20  #: of its driver, in a film
+_BEND = 1e-3  #: how far from a straight line something moves between two instants, over the size of the mechanism
+_HALVINGS = 4  #: of a step, where something moves fast
 
 
 class Reel:
@@ -126,7 +130,8 @@ class Reel:
             turned = math.floor((start % 360.0) / step + 1e-9)
             displayed = [(k - turned) % self.count for k in range(self.count)]
             angles = (start % 360.0) + (np.arange(self.count) - turned) * step
-            return angles, [results[k] for k in displayed], turned, True
+            nodes = dict(zip(angles.tolist(), (results[k] for k in displayed), strict=True))
+            return self._refined(nodes, float(angles[turned]), True)
         closing = {start + k * step: elements for k, elements in results.items()}
         for k in range(-1, -self.count, -1):
             if (elements := self._elements(start + k * step)) is None:
@@ -134,8 +139,40 @@ class Reel:
             closing[start + k * step] = elements
         for direction, last in ((1, max(closing)), (-1, min(closing))):
             closing |= self._toward_limit(last, direction * step, min(len(closing) - 1, 2))
-        ordered = sorted(closing)
-        return np.array(ordered), [closing[a] for a in ordered], ordered.index(start), False
+        return self._refined(dict(sorted(closing.items())), start, False)
+
+    def _refined(
+        self, nodes: dict[float, tuple[Element, ...]], start: float, turns: bool
+    ) -> tuple[np.ndarray, list[tuple[Element, ...]], int, bool]:
+        """Return the cycle with further instants where something moves fast, so that it goes nearly straight from
+        each instant to the next."""
+        low, high = extent(list(nodes.values()))
+        allowed = _BEND * max((high - low).real, (high - low).imag)
+        row = [*nodes.items()]
+        if turns:
+            row = [*row, (row[0][0] + 360.0, row[0][1]), (row[1][0] + 360.0, row[1][1])]
+        # Between two instants a smooth way bends about as much as its second difference says, over 8.
+        bends = [_bend(*(elements for _, elements in row[k - 1 : k + 2])) / 4 for k in range(1, len(row) - 1)]
+        around = [bends[-1] if turns else bends[0], *bends, bends[-1]]
+        for k, ((a, first), (b, second)) in enumerate(pairwise(row[:-1] if turns else row)):
+            if max(around[k : k + 2]) > allowed / 2:
+                nodes |= self._between(a, first, b, second, allowed, _HALVINGS)
+        ordered = sorted(nodes)
+        return np.array(ordered), [nodes[a] for a in ordered], ordered.index(start), turns
+
+    def _between(
+        self, a: float, first: tuple[Element, ...], b: float, second: tuple[Element, ...], allowed: float, halvings: int,
+    ) -> dict[float, tuple[Element, ...]]:  # fmt: skip
+        """Return the instants to add between two; none where the middle one lies nearly on the straight lines."""
+        middle = (a + b) / 2
+        elements = self._elements(middle)
+        if elements is None or _bend(first, elements, second) <= allowed:
+            return {}
+        if halvings > 1:
+            before = self._between(a, first, middle, elements, allowed, halvings - 1)
+            after = self._between(middle, elements, b, second, allowed, halvings - 1)
+            return {middle: elements} | before | after
+        return {middle: elements}
 
     def _reel(self, film: Film) -> tuple[np.ndarray, list[tuple[Element, ...]], int, bool]:
         """Return the cycle of a film: from 0, by equal steps and a last one that may be shorter."""
@@ -231,8 +268,21 @@ class Reel:
             gone = np.abs(self.angles - self.angles[self.first])[list(self.order)]
             return gone / gone[-1]
         if self.turns:
-            return np.linspace(0.0, 1.0, len(self.order))
+            turned = np.unwrap(self.angles[list(self.order)], period=360.0)
+            return np.abs(turned - turned[0]) / 360.0
         low, high = self.angles[[0, -1]]
         phase = np.arccos(np.clip((2 * self.angles - low - high) / (low - high), -1.0, 1.0))
         steps = np.abs(np.diff(phase[list(self.order)]))
         return np.concatenate([[0.0], np.cumsum(steps) / steps.sum()])
+
+
+def _bend(first: Sequence[Element], middle: Sequence[Element], second: Sequence[Element]) -> float:
+    """Return the largest distance of a link's end from the middle of where it is before and after, mm of mechanism."""
+    one, two, three = (_ends(elements) for elements in (first, middle, second))
+    if not len(one) == len(two) == len(three):
+        return 0.0
+    return max((abs(q - (p + r) / 2) for p, q, r in zip(one, two, three, strict=True)), default=0.0)
+
+
+def _ends(elements: Sequence[Element]) -> list[complex]:
+    return [end for element in elements for bar in element.bars() for end in bar]

@@ -278,19 +278,19 @@ def motion(request: Request) -> Response:
     work = _worksheet(request)
     if not work.variant.exercise.is_animated:
         raise HTTPException("page", 404)
-    has_numbers = work.attempt.is_example or set(work.attempt.marked().right) >= {
+    is_answered = work.attempt.is_example or set(work.attempt.marked().right) >= {
         part.id for part in work.variant.parts if not part.sort.is_open
     }
-    key = ("motion", work.exercise, work.seed, work.variant.lang, has_numbers)
-    names = request.site.cache.get(key, lambda: _motion(work.variant, has_numbers))
+    key = ("motion", work.exercise, work.seed, work.variant.lang, is_answered)
+    names = request.site.cache.get(key, lambda: _motion(work.variant, is_answered))
     more = {"sheet_page": work, "motion_title": work.variant.text.title, "is_piece": request.is_fragment}
     return request.render("site/student/practice_motion", **{**more, "motion": names})
 
 
-def _motion(variant: Any, has_numbers: bool) -> dict[str, Any]:
+def _motion(variant: Any, is_answered: bool) -> dict[str, Any]:
     moving = DisplayedAnimation(variant)
     usual = [effect for effect in EFFECTS[:2] if effect == "position" or effect in moving.available]
-    return motion_page.context(DisplayedAnimation(variant, usual), is_described=has_numbers)
+    return motion_page.context(DisplayedAnimation(variant, usual), is_answered=is_answered)
 
 
 ROUTES = (
