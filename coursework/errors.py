@@ -63,7 +63,7 @@ class WrongValue(CourseworkError, ValueError):
 
 
 class CannotAssemble(CourseworkError, ValueError):
-    """The linkage does not close; the message says by how much."""
+    """The linkage does not close; the message says by how much, in the unit of the lengths: ``(gap 3.2)``."""
 
 
 class Undefined(CourseworkError, ValueError):

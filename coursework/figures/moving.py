@@ -331,19 +331,27 @@ def _track(shapes: Sequence[Ink]) -> MotionTrack:
         return MotionTrack(_flat([[disc.center] for disc in discs]), mark=mark, layer=first.layer)
     closed = isinstance(first, Path) and first.closed
     fill = first.fill if isinstance(first, Path | Disc) else "none"
-    points = [_points_of(shape) for shape in shapes]
+    sides = max(_sides_of(shape) for shape in shapes)
+    points = [_points_of(shape, sides) for shape in shapes]
     most = max(map(len, points))
     # A path with fewer points stands on its last one for the rest.
     points = [[*row, *[row[-1]] * (most - len(row))] for row in points]
     return MotionTrack(_flat(points), _paint(first.width, fill, first.dash), closed, layer=first.layer)
 
 
-def _points_of(shape: Ink) -> list[complex]:
+def _sides_of(shape: Ink) -> int:
+    """Return the number of sides with which an arc looks like one."""
+    if not isinstance(shape, Arc):
+        return 0
+    turned = math.radians(abs(shape.end - shape.start))
+    return max(_ARC_SIDES, math.ceil(turned / math.sqrt(8 * _STRAIGHT / max(shape.radius, _STRAIGHT))))
+
+
+def _points_of(shape: Ink, sides: int = _ARC_SIDES) -> list[complex]:
     if isinstance(shape, Path):
         return list(shape.points)
     if isinstance(shape, Arc):
-        steps = range(_ARC_SIDES + 1)
-        return [shape.at(shape.start + (shape.end - shape.start) * k / _ARC_SIDES) for k in steps]
+        return [shape.at(shape.start + (shape.end - shape.start) * k / sides) for k in range(sides + 1)]
     return list(shape.outline())
 
 

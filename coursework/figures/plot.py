@@ -91,6 +91,8 @@ class Plot:
         Points beside the curve of each panel, by the panel's place.
     title
         Words above the panels.
+    width
+        Of a panel, mm.
 
     Raises
     ------
@@ -106,6 +108,7 @@ class Plot:
         at: float | None = None,
         spots: Sequence[Sequence[AnswerPoint]] = (),
         title: str = "",
+        width: float = _WIDTH,
     ):
         if not panels:
             raise WrongValue("a plot has one curve at least; found none")
@@ -118,14 +121,14 @@ class Plot:
             if not np.isfinite(panel.values).any():
                 raise WrongValue(f"the curve {panel.label} has no finite value")
         self.horizontal, self.panels, self.lang, self.at = horizontal, tuple(panels), lang, at
-        self.title = title
+        self.title, self.width = title, width
         self.spots = tuple(tuple(s) for s in spots) or ((),) * len(panels)
 
     @property
     def size(self) -> tuple[float, float]:
         """Width and height, mm."""
         count = len(self.panels)
-        return _LEFT + _WIDTH + _RIGHT, _TOP + count * _HEIGHT + (count - 1) * _GAP + _BOTTOM
+        return _LEFT + self.width + _RIGHT, _TOP + count * _HEIGHT + (count - 1) * _GAP + _BOTTOM
 
     @property
     def has_outside(self) -> tuple[bool, ...]:
@@ -149,7 +152,7 @@ class Plot:
 
     def _x(self, value: float) -> float:
         low, high = self._reach
-        return _LEFT + _WIDTH * (value - low) / (high - low)
+        return _LEFT + self.width * (value - low) / (high - low)
 
     def svg(self) -> str:
         """Return the plot as SVG; letters are outlines, so that it looks the same everywhere."""
@@ -158,7 +161,7 @@ class Plot:
         base = self.size[1] - _BOTTOM
         ticks = _axis_ticks(self.horizontal, low, high, 6)
         body += [self._number(value, complex(self._x(value), base + 4.2), "middle") for value in ticks]
-        middle = complex(_LEFT + _WIDTH / 2, base + 9.4)
+        middle = complex(_LEFT + self.width / 2, base + 9.4)
         body.append(put(self.horizontal.title, middle, "middle"))
         return page(self.size, body, self.title)
 
@@ -176,11 +179,11 @@ class Plot:
         across = _axis_ticks(self.horizontal, *self._reach, 6)
         grid = [f"M{number(self._x(t))} {number(top)}v{number(_HEIGHT)}" for t in across]
         ticks = _axis_ticks(panel, low, high, 4)
-        grid += [f"M{number(_LEFT)} {number(y(t))}h{number(_WIDTH)}" for t in ticks]
+        grid += [f"M{number(_LEFT)} {number(y(t))}h{number(self.width)}" for t in ticks]
         out.append(f'<path d="{"".join(grid)}" fill="none" stroke="{GRID}" stroke-width="0.2"/>')
         if low < 0 < high:
             out.append(
-                f'<path d="M{number(_LEFT)} {number(y(0))}h{number(_WIDTH)}" stroke="#000" stroke-width="0.25"/>'
+                f'<path d="M{number(_LEFT)} {number(y(0))}h{number(self.width)}" stroke="#000" stroke-width="0.25"/>'
             )
         out += [self._number(t, complex(_LEFT - 1.6, y(t) + 1.0), "end") for t in ticks]
         if self.at is not None:
@@ -205,7 +208,7 @@ class Plot:
     def _outside(self, spot: AnswerPoint, edge: float, is_above: bool) -> list[str]:
         """Return an arrow at the panel's edge with the number of a point outside the panel."""
         x, out = self._x(spot.x), -1 if is_above else 1
-        to_left = x > _LEFT + _WIDTH * 0.8
+        to_left = x > _LEFT + self.width * 0.8
         arrow = (
             f'<path d="M{number(x - 1.4)} {number(edge)}h2.8l-1.4 {number(2.0 * out)}z" '
             f'fill="{RIGHT if spot.right else WRONG}"/>'

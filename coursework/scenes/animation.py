@@ -82,16 +82,19 @@ class Animation(Reel):
         return self._points_at(self.angles)
 
     def _points_at(self, angles: np.ndarray) -> Mapping[str, Moving]:
+        named = {getattr(element, "label", "") for element in self.frames[self.first]}
+        moving = self.stated_points(angles)
+        return {n: point for n, point in moving.items() if self.film is not None or n in named}
+
+    def stated_points(self, angles: np.ndarray) -> Mapping[str, Moving]:
+        """Return all points that the solution moves, at angles of the driver, degrees, shape ``(n,)``."""
         solution = self.variant.exercise.solution
         if solution.motion is not None:
             stated = self._stated("motion", solution.motion, self._with_driver_at(angles))
-            moving = {name: point.over(len(angles)) for name, point in stated.items()}
-        elif solution.mechanism is not None:
-            moving = Scene(self.variant.exercise, self.variant.given).moving_points(angles)
-        else:
-            moving = {}
-        named = {getattr(element, "label", "") for element in self.frames[self.first]}
-        return {n: point for n, point in moving.items() if self.film is not None or n in named}
+            return {name: point.over(len(angles)) for name, point in stated.items()}
+        if solution.mechanism is not None:
+            return Scene(self.variant.exercise, self.variant.given).moving_points(angles)
+        return {}
 
     @cached_property
     def _paths(self) -> Mapping[str, np.ndarray]:

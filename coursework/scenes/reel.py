@@ -92,11 +92,18 @@ class Reel:
     def _elements(self, angle: float) -> tuple[Element, ...] | None:
         """Return the figure's elements at an angle of the driver; None where the mechanism does not close."""
         try:
-            return self._elements_or_fault(angle)
+            return self.elements_at(angle)
         except (CannotAssemble, Undefined, WrongValue):
             return None
 
-    def _elements_or_fault(self, angle: float) -> tuple[Element, ...]:
+    def elements_at(self, angle: float) -> tuple[Element, ...]:
+        """Return the figure's elements at an angle of the driver, degrees.
+
+        Raises
+        ------
+        CannotAssemble, Undefined, WrongValue
+            There is no figure at that angle.
+        """
         if self.film is not None:
             return self._stated("figure", self.film.figure, self._with_driver_at(float(angle))).elements
         given = self._with_driver_at(wrap(float(angle)))
@@ -191,7 +198,7 @@ class Reel:
         angles = self._sign * np.array([*(360.0 / self.count * np.arange(steps)), 360.0 * turns])
         angles = angles[:: self._sign] + 0.0  # no negative zero
         first = 0 if self._sign > 0 else steps
-        return angles, [self._elements_or_fault(angle) for angle in angles], first, True
+        return angles, [self.elements_at(angle) for angle in angles], first, True
 
     def _toward_limit(self, last: float, step: float, back: int) -> dict[float, tuple[Element, ...]]:
         """Return the limit beyond the last angle, and further angles before it, where the links turn as the
@@ -208,7 +215,7 @@ class Reel:
         """Return the last angle at which the mechanism closes, between one that closes and the next, which
         does not."""
         inside, outside = 0.0, 1.0
-        elements = self._elements_or_fault(angle)
+        elements = self.elements_at(angle)
         for _ in range(30):
             middle = (inside + outside) / 2
             tried = self._elements(angle + middle * step)

@@ -82,19 +82,24 @@ class Scene(Showing):
         """
         if not 1 <= count <= MOST_STEPS:
             raise WrongValue(f"a cycle has from 1 to {MOST_STEPS:g} steps; found {count:g}; take fewer")
-        at = self._steps(count)
-        columns = {self.driver.moved: at, **self._exercise_columns(self._at(at), at.shape)}
-        units = self._units(columns)
-        angles, speed, acceleration = self.driver_motion(at, moving=bool(self.extra))
-        for name, (values, unit) in self._extra_columns(angles, speed, acceleration).items():
-            columns[name], units[name] = np.broadcast_to(values, at.shape), unit
+        columns, units = self.columns(self.steps(count))
+        angles = self.driver_motion(columns[self.driver.moved], moving=False)[0]
         if len(columns) == 1:
             raise WrongValue(
                 f"{self.exercise.name}: nothing to show for the effects {', '.join(self.effects)}"
             )
         return SceneTable(columns, units, self._evaluated(), tuple(self._cycle_notes(columns, angles)))
 
-    def _steps(self, count: int) -> np.ndarray:
+    def columns(self, at: np.ndarray) -> tuple[dict[str, np.ndarray], dict[str, str]]:
+        """Return what the scene shows, and its units, at positions of the driver, shape ``(n,)``: degrees, or mm of a jack."""
+        columns = {self.driver.moved: at, **self._exercise_columns(self._at(at), at.shape)}
+        units = self._units(columns)
+        angles, speed, acceleration = self.driver_motion(at, moving=bool(self.extra))
+        for name, (values, unit) in self._extra_columns(angles, speed, acceleration).items():
+            columns[name], units[name] = np.broadcast_to(values, at.shape), unit
+        return columns, units
+
+    def steps(self, count: int) -> np.ndarray:
         """Return the positions of a cycle: degrees of a turn, or lengths between the limits of the jack, mm."""
         if (jack := self.driver.jack) is None:
             return np.arange(count + 1) * 360.0 / count

@@ -253,6 +253,11 @@ class Showing(Staged):
         sliding = {s.name.removesuffix(" slide"): s for s in shown.turning_slides(linkage)}
         return {point: self._moving(point, stance, sliding.get(point)) for point in points}
 
+    def ground_points(self) -> dict[str, complex]:
+        """Return the points of the ground, mm."""
+        stance, ground = self.pose(np.zeros(1)), self.linkage.mechanism.ground
+        return {point: complex(stance.place(self.linkage.owner(point))[0] / MM) for point in ground}
+
     def _moving(self, point: str, stance: Stance, slide: SlideJoint | None) -> Moving:
         held = stance.linkage.owner(point)
         position = stance.place(held) / MM

@@ -35,7 +35,7 @@ from coursework.site.lessons import lessons_page
 from coursework.site.lti import connecting, links_page
 from coursework.site.papers import assignments
 from coursework.site.people import accounts, home, people_page, privacy, scrubbing
-from coursework.site.practice import practice_page, progress_page
+from coursework.site.practice import explore_page, practice_page, progress_page
 from coursework.site.publication import publishing
 from coursework.site.warming import begin_warming
 from coursework.system.headers import Guarded
@@ -45,6 +45,7 @@ ROUTES: tuple[Route, ...] = (
     *home.ROUTES,
     *practice_page.ROUTES,
     *lessons_page.ROUTES,
+    *explore_page.ROUTES,
     *progress_page.ROUTES,
     *accounts.ROUTES,
     *people_page.ROUTES,

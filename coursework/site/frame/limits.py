@@ -29,6 +29,7 @@ class Rate(NamedTuple):
 PERSON = {
     "usual": Rate(600, 1),
     "paper": Rate(600, 1),
+    "explore": Rate(400, 1),
     "hand_in": Rate(120, 10),
     "upload": Rate(300, 10),
     "sign_in": Rate(60, 10),
@@ -37,6 +38,7 @@ PERSON = {
 ADDRESS = {
     "usual": Rate(6000, 1),
     "paper": Rate(6000, 1),
+    "explore": Rate(6000, 1),
     "hand_in": Rate(6000, 1),
     "upload": Rate(300, 10),
     "sign_in": Rate(3000, 10),

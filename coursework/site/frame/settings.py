@@ -28,6 +28,7 @@ from coursework.site.frame.pool import PracticePool
 from coursework.system.request_slots import RequestSlots
 
 _VARIANTS = 1200  #: items of the cache: variants with their answer keys, and drawings
+_EXPLORED = 100  #: mechanisms with their plots, of about 0.1 MB each
 
 Clock = Callable[[], datetime]
 
@@ -50,6 +51,7 @@ class Site:
     url: str = "http://127.0.0.1:8000"
     clock: Clock = None  # type: ignore[assignment]  #: by default a :class:`SteadyClock`
     cache: LRUCache = field(default_factory=lambda: LRUCache(_VARIANTS))
+    explored: LRUCache = field(default_factory=lambda: LRUCache(_EXPLORED))
     limits: Limits = field(default_factory=Limits)
     places: RequestSlots = field(default_factory=RequestSlots)
     lti: Path | None = None  #: folder of the learning platforms
@@ -111,7 +113,7 @@ class Site:
         return Course(course_folder(self.course.folder.root), Variant)
 
     def _go_on_with(self, course: Course[Any]) -> None:
-        self.course, self.cache = course, LRUCache(_VARIANTS)
+        self.course, self.cache, self.explored = course, LRUCache(_VARIANTS), LRUCache(_EXPLORED)
         self.__dict__.pop("pages", None)
 
     @property

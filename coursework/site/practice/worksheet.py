@@ -42,6 +42,7 @@ from coursework.site.lessons.lesson_content import (
     linked_lessons,
     section_links,
 )
+from coursework.site.practice import explore_page
 
 if TYPE_CHECKING:
     from coursework.course.variant import Variant
@@ -123,6 +124,16 @@ class Worksheet:
     @property
     def address(self) -> str:
         return f"/{self.name}"
+
+    @property
+    def explored(self) -> str:
+        """Address at which its mechanism is explored, with usual numbers; empty if it is not."""
+        return f"/explore/{self.exercise}" if explore_page.is_explored(self.variant.exercise) else ""
+
+    @property
+    def explored_own(self) -> str:
+        """The same with the numbers of the variant, which tell its answers."""
+        return self.explored and explore_page.address(self.variant)
 
     # ---------------------------------------------------------------------- boxes
 

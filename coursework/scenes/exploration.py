@@ -1,0 +1,382 @@
+"""Exploration of a driven mechanism with freely chosen data: whether it closes, its figure, paths, and quantities over a turn."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from coursework.course.exercise import CourseExercise
+from coursework.course.variant import Variant
+from coursework.errors import CannotAssemble, CourseworkError, Undefined, WrongValue
+from coursework.figures.base import Element
+from coursework.figures.elements import ground_pivot, link, pin
+from coursework.figures.marks import arc, note, trace
+from coursework.figures.moving import Arrow, MovingDrawing, TracedPoint, drawing
+from coursework.language.numbers import settled
+from coursework.model import GivenSpec
+from coursework.quantities.graph import Graph
+from coursework.scenes.animation import Animation
+from coursework.scenes.effects import KINEMATIC, of_exercise
+from coursework.scenes.scenes import Scene
+from coursework.structure.grashof import linkage_type
+
+STEPS = 360  #: of a turn
+_LEAST, _MOST = 0.25, 2.5  #: bounds of a length or a rate, over its typical value
+_PANELS = 3  #: quantities that are plotted of an effect
+_GAP = re.compile(r"\(gap (\S+)\)")
+
+
+@dataclass(frozen=True)
+class Parameter:
+    """Quantity that may be changed: a number between two bounds, or one of several cases."""
+
+    name: str
+    unit: str
+    low: float = 0.0
+    high: float = 0.0
+    step: float = 1.0
+    choices: tuple[str, ...] = ()
+
+    def value(self, text: str) -> float | str | None:
+        """Return the value that a text states, within the bounds; None for a text that states none."""
+        if self.choices:
+            return text if text in self.choices else None
+        try:
+            number = float(text[:_LONGEST].strip().replace(",", ".").replace("−", "-"))
+        except ValueError:
+            return None
+        return min(max(number, self.low), self.high) if math.isfinite(number) else None
+
+
+_LONGEST = 24  #: letters of a number
+
+
+def parameters(exercise: CourseExercise[Any], typical: Mapping[str, Any]) -> tuple[Parameter, ...]:
+    """Return what may be changed of a driven exercise, with bounds round its typical values; the driver's angle last.
+
+    A quantity that the driver's position decides is none of them.
+    """
+    driver = exercise.spec.driver
+    assert driver is not None  # an exercise without one is not explored
+    placed = () if driver.poses is None else exercise.posed(typical, 0.0)
+    lengths = [abs(v) for n, v in typical.items() if exercise.spec.given[n].unit == "mm"]
+    left = {*placed, driver.angle, driver.moved, *(driver.jack.limits if driver.jack else ())}
+    shown = _used(exercise)
+    size = max(lengths, default=1.0)
+    found = [
+        _parameter(n, spec, typical[n], size) for n, spec in exercise.spec.given.items() if n in shown and n not in left
+    ]  # fmt: skip
+    if driver.jack is not None:
+        shortest, longest = (float(typical[name]) for name in driver.jack.limits)
+        return (*found, Parameter(driver.moved, "mm", shortest, longest))
+    return (*found, Parameter(driver.angle, "deg", 0.0, float(STEPS)))
+
+
+def _used(exercise: CourseExercise[Any]) -> set[str]:
+    """Return the given quantities that the figure, or a quantity over the turn, goes by."""
+    spec, graph = exercise.spec, exercise.solution.graph
+    assert spec.driver is not None and spec.figure is not None
+    effects = of_exercise(exercise, spec.driver)
+    shown = {n for names in effects.values() for n in names} | {spec.driver.effort}
+    figure = Graph({**{f.__name__: f for f in spec.helpers}, "figure": spec.figure})
+    drawn = {n for n, given in spec.given.items() if given.shown and "figure" in figure.descendants((n,))}
+    return {n for n in spec.given if n in drawn or shown & graph.descendants((n,))}
+
+
+def _parameter(name: str, spec: GivenSpec, typical: Any, size: float) -> Parameter:
+    if spec.choices:
+        return Parameter(name, spec.unit, choices=spec.choices)
+    value, step = float(typical), float(spec.step)
+    if spec.unit == "deg":
+        is_positive = isinstance(spec.low, float) and spec.low > 0
+        return Parameter(name, spec.unit, step if is_positive else -180.0, 180.0, step)
+    if spec.positive:
+        return Parameter(name, spec.unit, max(step, _stepped(_LEAST * value, step)), _stepped(_MOST * value, step), step)
+    reach = _stepped(_MOST * abs(value) or (size if spec.unit == "mm" else 10.0), step)
+    return Parameter(name, spec.unit, -reach, reach, step)
+
+
+def _stepped(value: float, step: float) -> float:
+    return settled(max(1, round(value / step)) * step)
+
+
+@dataclass(frozen=True)
+class Curve:
+    """Quantity over the steps of a turn; NaN where it does not exist."""
+
+    name: str
+    unit: str
+    values: np.ndarray
+
+
+class Exploration:
+    """Driven mechanism with chosen data.
+
+    Parameters
+    ----------
+    exercise
+        It names a driver and a figure.
+    typical
+        Values of all given quantities, in their units, with which the mechanism closes.
+    changed
+        Values of :func:`parameters`, which replace them.
+    lang
+        Language of the texts in the figure.
+
+    Raises
+    ------
+    CannotAssemble
+        The data place the driver by another quantity, and the mechanism closes at none of its angles.
+    """
+
+    def __init__(
+        self, exercise: CourseExercise[Any], typical: Mapping[str, Any], changed: Mapping[str, Any], lang: str
+    ):
+        driver = exercise.spec.driver
+        assert driver is not None  # an exercise without one is not explored
+        self.exercise, self.driver = exercise, driver
+        values = {**typical, **changed}
+        self.at = float(values[driver.moved] if driver.moved in values else exercise.driver_angle(typical))
+        given = {n: v for n, v in values.items() if n in exercise.spec.given}
+        if driver.poses is not None and driver.jack is None:
+            given |= _placed(exercise, typical, given, self.at)
+        self._scene = Scene(exercise, given)
+        self._animation = Animation(Variant(exercise, 0, given, lang))
+
+    # --------------------------------------------------------------------- over a turn
+
+    @cached_property
+    def steps(self) -> np.ndarray:
+        """Values of the driver over a turn, degrees, or over the travel of its jack, mm."""
+        return self._scene.steps(STEPS)
+
+    @cached_property
+    def _angles(self) -> np.ndarray:
+        """Angles of the driver at the steps, degrees."""
+        return np.degrees(self._scene.driver_motion(self.steps, moving=False)[0])
+
+    @cached_property
+    def points(self) -> Mapping[str, np.ndarray]:
+        """Moving points of the mechanism over the steps, mm, complex; NaN where they do not exist."""
+        return {n: point.position for n, point in self._animation.stated_points(self._angles).items()}
+
+    def curves(self, effect: str) -> tuple[Curve, ...]:
+        """Return the first quantities of an effect over the steps: ``position`` … ``acceleration``, or ``forces``."""
+        return self._curves[effect]
+
+    @cached_property
+    def _curves(self) -> Mapping[str, tuple[Curve, ...]]:
+        columns, units = Scene(self.exercise, self._scene.given, KINEMATIC[:3]).columns(self.steps)
+        result = {}
+        for effect in KINEMATIC[:3]:
+            names = [n for n in self._scene.shown_by(effect) if n in columns and n != self.driver.moved]
+            names.sort(key=lambda name: units[name] == "1")  # a number is shown after angles and lengths
+            result[effect] = tuple(Curve(n, units[n], columns[n]) for n in names[:_PANELS])
+        return {**result, "forces": self._of_forces()}
+
+    def _of_forces(self) -> tuple[Curve, ...]:
+        """Return what the drive supplies, where the exercise has loads or masses."""
+        effects = [e for e in self._scene.with_data() if e != "flywheel"]
+        if not effects or self.exercise.solution.mechanism is None:
+            return ()
+        name = "drive_thrust" if self.exercise.solution.mechanism.pushed else "drive_torque"
+        try:
+            columns, units = Scene(self.exercise, self._scene.given, tuple(effects), (name,)).columns(self.steps)
+        except WrongValue:  # neither stroke is the working one
+            return ()
+        return tuple(Curve(n, units[n], columns[n]) for n in (self.driver.effort, name) if n in columns)[:1]
+
+    @cached_property
+    def closes(self) -> np.ndarray:
+        """True at the steps where the mechanism closes."""
+        values = [*self.points.values(), *(curve.values for curve in self._curves["position"])]
+        return np.logical_and.reduce([np.ones(len(self.steps), bool), *(np.isfinite(v) for v in values)])
+
+    @property
+    def ranges(self) -> list[tuple[float, float]]:
+        """Ranges of the driver in which the mechanism closes, each from its first step to its last."""
+        edges = np.flatnonzero(np.diff(np.concatenate([[False], self.closes, [False]]).astype(int)))
+        return [(float(self.steps[a]), float(self.steps[b - 1])) for a, b in edges.reshape(-1, 2).tolist()]
+
+    # ------------------------------------------------------------------------- mobility
+
+    @cached_property
+    def type(self) -> str:
+        """Type of the four-bar linkage that the driver turns, one of :data:`~coursework.structure.grashof.TYPES`; empty
+        if it turns none."""
+        chain = self._four_bar()
+        if chain is None or not self.closes.any():
+            return ""
+        moving = self._scene.moving_points(self._angles[self.closes][:1])
+        places = {n: point.position[0] for n, point in moving.items()} | self._scene.ground_points()
+        O, A, B, C = (places[name] for name in chain)
+        lengths = (settled(abs(z)) for z in (C - O, A - O, B - A, C - B))
+        return str(linkage_type(*lengths))
+
+    def _four_bar(self) -> tuple[str, str, str, str] | None:
+        """Return the pins of crank, coupler and output: fixed, moving, moving, fixed."""
+        mechanism = self.exercise.solution.mechanism
+        if mechanism is None or self.driver.jack is not None:
+            return None
+        bodies, ground = mechanism.bodies, mechanism.ground
+        cranks = [b for b in bodies if b.angle == self.driver.angle and b.at in ground]
+        for crank in cranks:
+            for coupler in (b for b in bodies if b.at in crank.points):
+                for output in (b for b in bodies if b.at in ground and b is not crank):
+                    for shared in coupler.points.keys() & output.points.keys():
+                        return crank.at, coupler.at, shared, output.at
+        return None
+
+    # ---------------------------------------------------------------------- one instant
+
+    @cached_property
+    def _angle(self) -> float:
+        """Angle of the driver now, degrees.
+
+        Raises
+        ------
+        CannotAssemble
+            The jack does not reach that length.
+        """
+        if self.driver.jack is None:
+            return self.at
+        found = self.exercise.solve(**self._scene.given, only=self.driver.angle, effects=())
+        return float(found[self.driver.angle])
+
+    @cached_property
+    def _now(self) -> tuple[tuple[Element, ...], CourseworkError | None]:
+        try:
+            return self._animation.elements_at(self._angle), None
+        except (CannotAssemble, Undefined, WrongValue) as fault:
+            return (), fault
+
+    @property
+    def is_open(self) -> bool:
+        """True if the mechanism does not close with the driver where it is."""
+        return self._now[1] is not None
+
+    @property
+    def gap(self) -> float | None:
+        """Length that lacks for the mechanism to close, mm; None where it closes, or where nothing says it."""
+        return self.gap_of(self._now[1])
+
+    @staticmethod
+    def gap_of(fault: CourseworkError | None) -> float | None:
+        """Return the gap that a fault states, mm; None where it states none."""
+        found = _GAP.search(str(fault or ""))
+        return abs(float(found[1])) if found else None
+
+    @cached_property
+    def nearest(self) -> float | None:
+        """Value of the driver nearest to its own at which the mechanism closes; None if it closes nowhere."""
+        if not self.closes.any():
+            return None
+        away = np.abs(self.steps - self.at)
+        if self.driver.jack is None:
+            away = np.minimum(away, 360.0 - away)
+        return float(self.steps[np.where(self.closes, away, np.inf).argmin()])
+
+    def values_now(self) -> Mapping[str, float]:
+        """Return the plotted quantities with the driver where it is, by linear steps of a turn; NaN where they do not exist."""
+        every = [curve for curves in self._curves.values() for curve in curves]
+        place = float(np.interp(self.at, self.steps, np.arange(len(self.steps))))
+        k, share = min(int(place), len(self.steps) - 2), place - min(int(place), len(self.steps) - 2)
+        return {c.name: float(c.values[k] if share == 0 else c.values[k] + share * (c.values[k + 1] - c.values[k])) for c in every}
+
+    def drawing(self) -> MovingDrawing | None:
+        """Return the figure with the paths of its points; where it does not close, what is known of it."""
+        elements = _without_choices(self._now[0]) or self._lonely()
+        if not elements:
+            return None
+        named = {getattr(element, "label", "") for element in elements}
+        spots = [
+            TracedPoint(run[:1], name, len(run) == len(way) and self.driver.jack is None, run)
+            for name, way in self.points.items() if name in named
+            for run in _runs(way)
+        ]  # fmt: skip
+        gap = self._gap_arrow
+        arrows = [] if gap is None else [Arrow(np.array([a]), np.array([b - a]), "acceleration", "") for a, b in (gap, gap[::-1])]
+        return drawing([elements], spots=spots, arrows=arrows)
+
+    def _lonely(self) -> tuple[Element, ...]:
+        """Return the pivots and those pins whose places are known although the mechanism does not close."""
+        if self.exercise.solution.mechanism is None:
+            return ()
+        fixed = self._scene.ground_points()
+        elements: list[Element] = [ground_pivot(p, name) for name, p in fixed.items()]
+        if self.driver.jack is not None:
+            return tuple(elements)
+        moving = {
+            n: complex(point.position[0])
+            for n, point in self._animation.stated_points(np.array([self.at])).items()
+            if np.isfinite(point.position[0])
+        }
+        elements += [pin(p, name) for name, p in moving.items()]
+        if (bars := self._two_bars(fixed | moving)) is not None:
+            (A, coupler), (C, output) = bars
+            elements += [link(fixed[self._four_bar()[0]], A), arc(A, coupler, 0, 360, dashed=True), arc(C, output, 0, 360, dashed=True)]
+        return tuple(elements)
+
+    def _two_bars(self, places: Mapping[str, complex]) -> tuple[tuple[complex, float], tuple[complex, float]] | None:
+        """Return the pin and the length of coupler and output, mm; None unless the crank turns a four-bar linkage."""
+        chain = self._four_bar()
+        if chain is None or chain[1] not in places:
+            return None
+        _, A, B, C = chain
+        bodies, number = self._scene.mechanism.bodies, self._scene.linkage.number
+        reach = {body.at: abs(complex(number(body.points[B]))) for body in bodies if B in body.points}
+        return (places[A], reach[A]), (places[C], reach[C])
+
+    @property
+    def _gap_arrow(self) -> tuple[complex, complex] | None:
+        """Ends of the gap between the circles on which coupler and output end, mm."""
+        if not self.is_open or self.driver.jack is not None or self._four_bar() is None:
+            return None
+        crank = self._animation.stated_points(np.array([self.at]))
+        places = self._scene.ground_points() | {n: complex(p.position[0]) for n, p in crank.items()}
+        bars = self._two_bars(places)
+        if bars is None:
+            return None
+        (A, coupler), (C, output) = bars
+        u = (C - A) / abs(C - A)
+        pairs = [(A + s * coupler * u, C + t * output * u) for s in (1, -1) for t in (1, -1)]
+        return min(pairs, key=lambda ends: abs(ends[1] - ends[0]))
+
+
+def _placed(
+    exercise: CourseExercise[Any], typical: Mapping[str, Any], given: Mapping[str, Any], at: float
+) -> dict[str, Any]:
+    """Return the quantities that place the driver, in the assembly of the typical data, at an angle, degrees, or at the
+    nearest at which the mechanism closes."""
+    helpers = Graph({function.__name__: function for function in exercise.spec.helpers})
+    moved = helpers.descendants(tuple(exercise.posed(typical, at))) & set(helpers.quantities)
+    assembly = helpers.evaluate(tuple(moved), {n: v for n, v in typical.items() if n in helpers.leaves})
+    known = {**given, **assembly}
+    angles = at + np.arange(float(STEPS))
+    placed = exercise.posed(known, angles)
+    exists = np.logical_and.reduce([np.isfinite(v) for v in placed.values() if np.asarray(v).dtype.kind == "f"])
+    if not exists.any():
+        exercise.posed(known, at)  # says by how much it does not close
+    away = np.minimum(angles - at, STEPS + at - angles)
+    k = int(np.where(exists, away, np.inf).argmin())
+    return {n: np.broadcast_to(v, angles.shape)[k].item() for n, v in placed.items()}
+
+
+def _without_choices(elements: tuple[Element, ...]) -> tuple[Element, ...]:
+    """Return the elements without curves to choose from, which the question of a statement draws beside the mechanism."""
+    if not any(isinstance(element, trace) for element in elements):
+        return elements
+    return tuple(element for element in elements if not isinstance(element, (trace, note)))
+
+
+def _runs(way: np.ndarray) -> list[np.ndarray]:
+    """Return the pieces of a path that exist."""
+    exists = np.concatenate([[False], np.isfinite(way), [False]])
+    edges = np.flatnonzero(np.diff(exists.astype(int))).reshape(-1, 2)
+    return [way[a:b] for a, b in edges.tolist() if b - a > 1]
