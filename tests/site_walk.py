@@ -173,7 +173,7 @@ def fillings(site: Filled) -> dict[str, Filling]:
         "/practice/{exercise}": practice,
         "/lessons/{lesson}": Filling({"lesson": "plane_mechanisms"}),
         "/lessons/{lesson}/figures/{figure}": Filling({"lesson": "plane_mechanisms", "figure": "none.svg"}),
-        "/explore/{exercise}": practice,
+        "/explore/{exercise}": Filling({"exercise": "four_bar_motion"}),
         **{
             f"/practice/{{exercise}}/{{seed}}{end}": practice
             for end in ("", "/draft", "/read", "/solution", "/motion")

@@ -152,7 +152,7 @@ class Intake:
 
     def _check_domain(self, name: str, spec: GivenSpec, value: Any) -> None:
         if isinstance(value, np.ndarray):
-            if spec.positive and value.size and np.nanmin(value) <= 0:
+            if spec.positive and (value <= 0).any():
                 raise _not_positive(name, np.nanmin(value), spec)
             if spec.nonzero and not value.all():
                 raise WrongValue("{name} must not be 0", name=name)

@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import partial
+from functools import lru_cache, partial
 from itertools import pairwise
 
 import numpy as np
@@ -132,7 +132,7 @@ class MovingDrawing:
     scale: float
     corner: complex = 0j  #: top left corner, mm on paper from the origin of the mechanism, y up
 
-    def on_paper(self, p: np.ndarray) -> np.ndarray:
+    def on_paper(self, p: complex | np.ndarray) -> np.ndarray:
         """Return points of the mechanism (mm, complex, shape ``(...)``) as x, y in the drawing, mm, y down: ``(..., 2)``."""
         off = np.asarray(p) * self.scale - self.corner
         return np.stack([off.real, -off.imag], axis=-1)
@@ -446,6 +446,7 @@ def _labels(
     ]
 
 
+@lru_cache(maxsize=512)
 def _letters(label: str, colour: str) -> str:
     """Return a label centred on the origin as SVG, on a white rim, so that lines may pass under it."""
     text = read(label)

@@ -7,7 +7,7 @@ import math
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
 
 import numpy as np
 
@@ -278,12 +278,17 @@ def put(text: LabelText, at: complex, anchor: str, size: float = 1.0) -> str:
     """Return a text as outlines; ``at`` is its start, middle or end on the baseline."""
     width = text.width * SIZE * size
     start = at - {"start": 0.0, "middle": width / 2, "end": width}[anchor]
-    middle = SIZE * text.width / 2
-    inner = as_outlines(text, middle) + accents(text, middle)
+    inner = _outlined(text)
     scale = f" scale({number(size)})" if size != 1 else ""
     return (
         f'<g fill="#000" transform="translate({number(start.real)} {number(start.imag)}){scale}">{inner}</g>'
     )
+
+
+@lru_cache(maxsize=1024)
+def _outlined(text: LabelText) -> str:
+    middle = SIZE * text.width / 2
+    return as_outlines(text, middle) + accents(text, middle)
 
 
 def _range(values: np.ndarray, others: Sequence[float]) -> tuple[float, float]:

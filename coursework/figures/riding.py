@@ -21,6 +21,7 @@ _START, _FARTHER = 0.5, 0.25  #: what it costs to leave a place, and each mm of 
 _STEPS = (0.0, 1.0, 2.2, 4.0, 6.0)
 _SHARES = (0.5, 0.4, 0.6, 0.3, 0.7, 0.2, 0.8)
 _WHITE = 0.2  #: white asked for round a label, mm
+_AT_ONCE = 20_000  #: boxes and segments that are compared at once: more would leave the processor's cache
 _LOOKED_AT = 216  #: instants at which places are compared; between them labels go steadily
 
 Segments = tuple[np.ndarray, np.ndarray]
@@ -57,8 +58,8 @@ def _places(wishes: Sequence[LabelRequest], half: np.ndarray) -> Iterator[tuple[
     anchor = np.array([wish.anchor for wish in wishes])
     start = np.array([wish.start for wish in wishes])
 
-    def beyond(direction: np.ndarray, step: float) -> np.ndarray:
-        return direction * (start + step + half[0] * abs(direction.real) + half[1] * abs(direction.imag))
+    def beyond(direction: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        return direction, direction * (start + half[0] * abs(direction.real) + half[1] * abs(direction.imag))
 
     first = wishes[0]
     if first.along:
@@ -66,18 +67,19 @@ def _places(wishes: Sequence[LabelRequest], half: np.ndarray) -> Iterator[tuple[
         length = abs(q - p)
         normal = 1j * (q - p) / np.where(length > 0, length, 1.0)
         for side in (1, -1):
+            way, off = beyond(side * normal)
             for share in _SHARES:
+                foot = p + share * (q - p) + off
                 for step in _STEPS:
-                    cost = step + 4 * abs(share - 0.5)
-                    yield cost, p + share * (q - p) + beyond(side * normal, step)
+                    yield step + 4 * abs(share - 0.5), foot + step * way
         return
     # An angle's label keeps to its bisector; the others keep their direction on the paper.
     aim = np.array([w.toward for w in wishes]) if first.rank == ANGLES else np.full(len(wishes), first.toward)
     late = _TURN if first.rank == NAMES else 2 * _TURN
     for sixteenth in range(16):
+        way, off = beyond(aim * turn(22.5 * sixteenth))
         for step in _STEPS:
-            cost = step + late * min(sixteenth, 16 - sixteenth)
-            yield cost, anchor + beyond(aim * turn(22.5 * sixteenth), step)
+            yield step + late * min(sixteenth, 16 - sixteenth), anchor + off + step * way
 
 
 def _on_line(segments: Segments, centres: np.ndarray, half: np.ndarray) -> np.ndarray:
@@ -87,11 +89,12 @@ def _on_line(segments: Segments, centres: np.ndarray, half: np.ndarray) -> np.nd
     across, up = half[0] + abs(d.real), half[1] + abs(d.imag)
     extent = half[0] * abs(d.imag) + half[1] * abs(d.real)
     met = np.zeros(centres.shape, dtype=bool)
-    for index, row in enumerate(centres):
-        gap = middle - row[:, None]
+    together = max(1, _AT_ONCE // middle.size)
+    for index in range(0, len(centres), together):
+        gap = middle - centres[index : index + together, :, None]
         hit = (abs(gap.real) < across) & (abs(gap.imag) < up)
         hit &= abs(gap.real * d.imag - gap.imag * d.real) < extent
-        met[index] = hit.any(axis=1)
+        met[index : index + together] = hit.any(axis=-1)
     return met
 
 

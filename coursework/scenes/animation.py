@@ -23,7 +23,16 @@ from coursework.errors import WrongValue, unknown
 from coursework.figures.base import Element
 from coursework.figures.elements import bar
 from coursework.figures.marks import angle_mark, dimension, line
-from coursework.figures.moving import PAPER_MM, Arrow, LegendKey, MovingDrawing, TracedPoint, drawing, extent, matched
+from coursework.figures.moving import (
+    PAPER_MM,
+    Arrow,
+    LegendKey,
+    MovingDrawing,
+    TracedPoint,
+    drawing,
+    extent,
+    matched,
+)
 from coursework.figures.moving_svg import moving_svg, still_svgs
 from coursework.language.numbers import unit_text
 from coursework.language.words import words
@@ -33,9 +42,25 @@ from coursework.scenes.reel import Reel
 from coursework.scenes.scenes import Scene
 from coursework.solution import Moving
 
-
 _FINER = 8  #: steps of a path for one of the instants
 _LONGEST = 0.3  #: of the longest vector, over the size of the mechanism
+
+
+def told_by_motion(variant: Variant) -> tuple[str, ...]:
+    """Return the ids of the parts whose answer one sees at a glance when the mechanism moves.
+
+    Those are choices that hold for the whole cycle, such as whether a guide rotates; where a film of the solution moves
+    in place of the figure, all parts. What is read from a figure to scale with a ruler is not among them.
+    """
+    exercise = variant.exercise
+    if exercise.film is not None:
+        return tuple(part.id for part in variant.parts if not part.sort.is_open)
+    if exercise.spec.driver is None:
+        return ()
+    graph, given = exercise.solution.graph, exercise.spec.given
+    sizes = [name for name in given if name != exercise.spec.driver.moved]
+    of_cycle = graph.descendants(sizes) - graph.descendants((exercise.spec.driver.moved,))
+    return tuple(p.id for p in variant.parts if p.choices and p.quantity in of_cycle)
 
 
 class Animation(Reel):
@@ -122,7 +147,12 @@ class Animation(Reel):
         """Return the points of what is drawn at every instant, each over the instants, mm, shape ``(n,)``."""
         columns = zip(*matched(self.frames), strict=True)
         reaches = ([element.reach() for element in column] for column in columns)
-        return [np.array(way) for reach in reaches if len({*map(len, reach)}) == 1 for way in zip(*reach, strict=True)]
+        return [
+            np.array(way)
+            for reach in reaches
+            if len({*map(len, reach)}) == 1
+            for way in zip(*reach, strict=True)
+        ]
 
     @cached_property
     def readings(self) -> tuple[Gauge, ...]:

@@ -81,7 +81,8 @@ def parameters(exercise: CourseExercise[Any], typical: Mapping[str, Any]) -> tup
 def _used(exercise: CourseExercise[Any]) -> set[str]:
     """Return the given quantities that the figure, or a quantity over the turn, goes by."""
     spec, graph = exercise.spec, exercise.solution.graph
-    assert spec.driver is not None and spec.figure is not None
+    assert spec.driver is not None
+    assert spec.figure is not None
     effects = of_exercise(exercise, spec.driver)
     shown = {n for names in effects.values() for n in names} | {spec.driver.effort}
     figure = Graph({**{f.__name__: f for f in spec.helpers}, "figure": spec.figure})
@@ -97,7 +98,9 @@ def _parameter(name: str, spec: GivenSpec, typical: Any, size: float) -> Paramet
         is_positive = isinstance(spec.low, float) and spec.low > 0
         return Parameter(name, spec.unit, step if is_positive else -180.0, 180.0, step)
     if spec.positive:
-        return Parameter(name, spec.unit, max(step, _stepped(_LEAST * value, step)), _stepped(_MOST * value, step), step)
+        return Parameter(
+            name, spec.unit, max(step, _stepped(_LEAST * value, step)), _stepped(_MOST * value, step), step
+        )
     reach = _stepped(_MOST * abs(value) or (size if spec.unit == "mm" else 10.0), step)
     return Parameter(name, spec.unit, -reach, reach, step)
 
@@ -187,7 +190,9 @@ class Exploration:
             return ()
         name = "drive_thrust" if self.exercise.solution.mechanism.pushed else "drive_torque"
         try:
-            columns, units = Scene(self.exercise, self._scene.given, tuple(effects), (name,)).columns(self.steps)
+            columns, units = Scene(self.exercise, self._scene.given, tuple(effects), (name,)).columns(
+                self.steps
+            )
         except WrongValue:  # neither stroke is the working one
             return ()
         return tuple(Curve(n, units[n], columns[n]) for n in (self.driver.effort, name) if n in columns)[:1]
@@ -287,11 +292,16 @@ class Exploration:
         every = [curve for curves in self._curves.values() for curve in curves]
         place = float(np.interp(self.at, self.steps, np.arange(len(self.steps))))
         k, share = min(int(place), len(self.steps) - 2), place - min(int(place), len(self.steps) - 2)
-        return {c.name: float(c.values[k] if share == 0 else c.values[k] + share * (c.values[k + 1] - c.values[k])) for c in every}
+        return {
+            c.name: float(
+                c.values[k] if share == 0 else c.values[k] + share * (c.values[k + 1] - c.values[k])
+            )
+            for c in every
+        }
 
     def drawing(self) -> MovingDrawing | None:
         """Return the figure with the paths of its points; where it does not close, what is known of it."""
-        elements = _without_choices(self._now[0]) or self._lonely()
+        elements = _without_choices(self._now[0]) or self._pins()
         if not elements:
             return None
         named = {getattr(element, "label", "") for element in elements}
@@ -300,53 +310,58 @@ class Exploration:
             for name, way in self.points.items() if name in named
             for run in _runs(way)
         ]  # fmt: skip
-        gap = self._gap_arrow
-        arrows = [] if gap is None else [Arrow(np.array([a]), np.array([b - a]), "acceleration", "") for a, b in (gap, gap[::-1])]
-        return drawing([elements], spots=spots, arrows=arrows)
+        return drawing([elements], spots=spots, arrows=self._gap_arrows())
 
-    def _lonely(self) -> tuple[Element, ...]:
-        """Return the pivots and those pins whose places are known although the mechanism does not close."""
+    @cached_property
+    def _known(self) -> Mapping[str, complex]:
+        """Pivots, and those pins whose places are known although the mechanism does not close, mm."""
         if self.exercise.solution.mechanism is None:
+            return {}
+        fixed = self._scene.ground_points()
+        if self.driver.jack is not None:
+            return fixed
+        points = self._animation.stated_points(np.array([self.at]))
+        moving = {name: complex(point.position[0]) for name, point in points.items()}
+        return fixed | {name: p for name, p in moving.items() if np.isfinite(p)}
+
+    def _pins(self) -> tuple[Element, ...]:
+        """Return what is known of a mechanism that does not close; of a four-bar linkage also the circles on which coupler
+        and output end."""
+        if not self._known:
             return ()
         fixed = self._scene.ground_points()
-        elements: list[Element] = [ground_pivot(p, name) for name, p in fixed.items()]
-        if self.driver.jack is not None:
-            return tuple(elements)
-        moving = {
-            n: complex(point.position[0])
-            for n, point in self._animation.stated_points(np.array([self.at])).items()
-            if np.isfinite(point.position[0])
-        }
-        elements += [pin(p, name) for name, p in moving.items()]
-        if (bars := self._two_bars(fixed | moving)) is not None:
-            (A, coupler), (C, output) = bars
-            elements += [link(fixed[self._four_bar()[0]], A), arc(A, coupler, 0, 360, dashed=True), arc(C, output, 0, 360, dashed=True)]
-        return tuple(elements)
+        shown: list[Element] = [
+            ground_pivot(p, n) if n in fixed else pin(p, n) for n, p in self._known.items()
+        ]
+        if self._apart is not None:
+            O, *circles = self._apart
+            shown.append(link(O, circles[0][0]))
+            shown += [arc(center, radius, 0, 360, dashed=True) for center, radius in circles]
+        return tuple(shown)
 
-    def _two_bars(self, places: Mapping[str, complex]) -> tuple[tuple[complex, float], tuple[complex, float]] | None:
-        """Return the pin and the length of coupler and output, mm; None unless the crank turns a four-bar linkage."""
+    @cached_property
+    def _apart(self) -> tuple[complex, tuple[complex, float], tuple[complex, float]] | None:
+        """Pivot of the crank, and the circles on which coupler and output end, each by its centre and radius, mm; None
+        unless it is these two that do not reach each other."""
         chain = self._four_bar()
-        if chain is None or chain[1] not in places:
+        if chain is None or not self.is_open or chain[1] not in self._known:
             return None
-        _, A, B, C = chain
+        O, A, C = (self._known[name] for name in (chain[0], chain[1], chain[3]))
         bodies, number = self._scene.mechanism.bodies, self._scene.linkage.number
-        reach = {body.at: abs(complex(number(body.points[B]))) for body in bodies if B in body.points}
-        return (places[A], reach[A]), (places[C], reach[C])
+        reach = {b.at: abs(complex(number(b.points[chain[2]]))) for b in bodies if chain[2] in b.points}
+        coupler, output = reach[chain[1]], reach[chain[3]]
+        meets = abs(coupler - output) <= abs(C - A) <= coupler + output
+        return None if meets else (O, (A, coupler), (C, output))
 
-    @property
-    def _gap_arrow(self) -> tuple[complex, complex] | None:
-        """Ends of the gap between the circles on which coupler and output end, mm."""
-        if not self.is_open or self.driver.jack is not None or self._four_bar() is None:
-            return None
-        crank = self._animation.stated_points(np.array([self.at]))
-        places = self._scene.ground_points() | {n: complex(p.position[0]) for n, p in crank.items()}
-        bars = self._two_bars(places)
-        if bars is None:
-            return None
-        (A, coupler), (C, output) = bars
-        u = (C - A) / abs(C - A)
-        pairs = [(A + s * coupler * u, C + t * output * u) for s in (1, -1) for t in (1, -1)]
-        return min(pairs, key=lambda ends: abs(ends[1] - ends[0]))
+    def _gap_arrows(self) -> list[Arrow]:
+        """Return the shortest way between those two circles, an arrow from each side."""
+        if self._apart is None:
+            return []
+        _, (A, coupler), (C, output) = self._apart
+        along = (C - A) / (abs(C - A) or 1.0)
+        ends = [(A + s * coupler * along, C + t * output * along) for s in (1, -1) for t in (1, -1)]
+        a, b = min(ends, key=lambda pair: abs(pair[1] - pair[0]))
+        return [Arrow(np.array([p]), np.array([q - p]), "acceleration", "") for p, q in ((a, b), (b, a))]
 
 
 def _placed(
@@ -360,7 +375,9 @@ def _placed(
     known = {**given, **assembly}
     angles = at + np.arange(float(STEPS))
     placed = exercise.posed(known, angles)
-    exists = np.logical_and.reduce([np.isfinite(v) for v in placed.values() if np.asarray(v).dtype.kind == "f"])
+    exists = np.logical_and.reduce(
+        [np.isfinite(v) for v in placed.values() if np.asarray(v).dtype.kind == "f"]
+    )
     if not exists.any():
         exercise.posed(known, at)  # says by how much it does not close
     away = np.minimum(angles - at, STEPS + at - angles)

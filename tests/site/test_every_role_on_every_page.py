@@ -39,6 +39,7 @@ WHO = {
     **dict.fromkeys(("/sign-out", "/account", "/progress"), (STUDENTS, STUDENTS)),
     "/lessons/{lesson}": (STUDENTS, STUDENTS), "/lessons/{lesson}/figures/{figure}": (STUDENTS, None),
     "/practice/{exercise}": (STUDENTS, STUDENTS), "/practice/{exercise}/{seed}/motion": (STUDENTS, None),
+    "/explore/{exercise}": (STUDENTS, None),
     **{f"/practice/{{exercise}}/{{seed}}{end}": (STUDENTS, STUDENTS) for end in ("", "/draft", "/read", "/solution")},
     **{f"/assignments/{{number:int}}{end}": (STUDENTS, STUDENTS) for end in ("", "/keep", "/hand-in", "/file")},
     **{

@@ -260,13 +260,26 @@ def test_a_fresh_variant_asks_no_theory_again(class_of_three):
     assert f'id="told-{BOX}{next(iter(known))}"' in one.page()
 
 
-def test_the_motion_tells_its_numbers_when_all_is_right(zoe):
+def test_the_motion_shows_paths_vectors_and_values_when_all_is_right(class_of_three):
+    zoe = Practising(class_of_three, class_of_three.browser(ZOE), "four_bar_motion")
     place = f"{zoe.address}/motion"
     before = zoe.browser.get(place).text
     assert "data-track" in before
-    assert "data-reading" not in before
+    assert not [told for told in ("data-reading", "data-effect", "data-key", "data-point") if told in before]
     zoe.send({p.id: right_answer(zoe.variant, p) for p in zoe.variant.parts}, check="")
-    assert "data-reading" in zoe.browser.get(place).text
+    after = zoe.browser.get(place).text
+    assert all(told in after for told in ("data-reading", "data-effect", "data-key", "data-point"))
+
+
+def test_a_motion_that_is_itself_an_answer_comes_after_it(class_of_three):
+    zoe = Practising(class_of_three, class_of_three.browser(ZOE), "coupler_curve")
+    place, (part,) = f"{zoe.address}/motion", [p for p in zoe.variant.parts if p.id == "curve"]
+    assert "data-track" not in zoe.browser.get(place).text
+    zoe.send({part.id: right_answer(zoe.variant, part)}, check=part.id)
+    assert "data-track" in zoe.browser.get(place).text
+    given_up = Practising(class_of_three, class_of_three.browser(MAX), "coupler_curve")
+    given_up.send({}, reveal="curve")
+    assert "data-track" in given_up.browser.get(f"{given_up.address}/motion").text
 
 
 def test_predictions_stand_beside_what_came_out(zoe):

@@ -59,7 +59,7 @@ def test_a_sheet_fits_its_screen_and_is_read_aloud(window, exercise, size, lang)
 
 
 def test_a_mechanism_moves_in_its_sheet(window):
-    page = window()
+    page = window("four_bar_motion")
     page.click("button[value=motion]")
     page.click("#play")
     places = set()

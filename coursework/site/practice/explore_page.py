@@ -22,8 +22,11 @@ from coursework.site.frame.pool import FIRST_SEED
 from coursework.site.frame.requests import HTTPException, Request, Route
 from coursework.site.papers.assignment_state import published_states
 
-SEED = FIRST_SEED - 1  #: of the variant whose numbers the page begins with: one of no class and of no practice
+SEED = (
+    FIRST_SEED - 1
+)  #: of the variant whose numbers the page begins with: one of no class and of no practice
 _PLOT_MM = 62.0  #: width of a plot: its numbers can be read on a telephone
+_EVERY = 2  #: steps of a turn between two points of a plot
 EFFECTS = ("position", "velocity", "acceleration", "forces")
 
 
@@ -68,7 +71,11 @@ def address(variant: Any) -> str:
 def usual(variant: Any, choices: tuple[Parameter, ...]) -> dict[str, Any]:
     """Return the values of a variant, the driver's as well."""
     given = variant.given
-    at = {choices[-1].name: variant.exercise.driver_angle(given) % 360.0} if choices[-1].name not in given else {}
+    at = (
+        {choices[-1].name: variant.exercise.driver_angle(given) % 360.0}
+        if choices[-1].name not in given
+        else {}
+    )
     values = {p.name: given.get(p.name, at.get(p.name)) for p in choices}
     angle = choices[-1]
     return values if angle.unit != "deg" else {**values, angle.name: values[angle.name] % 360.0}
@@ -101,18 +108,26 @@ def _shown(
         return {"sentences": [said["undefined"]], "closes": False}
     exercise = typical.exercise
     symbol, unit = exercise.symbol(driver.name), unit_text(driver.unit, lang)
-    axis = Axis(symbol, unit, found.steps)
+    axis = Axis(symbol, unit, found.steps[::_EVERY])
     plots = []
     for effect, rows in curves.items():
         panels = [
-            Axis(exercise.solution_symbol(c.name) if c.name in exercise.quantity_names else said["torque"], unit_text(c.unit, lang), c.values)
+            Axis(
+                exercise.solution_symbol(c.name) if c.name in exercise.quantity_names else said["torque"],
+                unit_text(c.unit, lang),
+                c.values[::_EVERY],
+            )
             for c in rows
-            if np.isfinite(c.values).any()
+            if np.isfinite(c.values[::_EVERY]).any()
         ]
         if panels:
             plots.append((said[effect], Markup(Plot(axis, panels, lang, at=found.at, width=_PLOT_MM).svg())))
     numbers = [
-        (exercise.solution_symbol(c.name) if c.name in exercise.quantity_names else said["torque"], unit_text(c.unit, lang), localise(significant(now[c.name], 4), lang))
+        (
+            exercise.solution_symbol(c.name) if c.name in exercise.quantity_names else said["torque"],
+            unit_text(c.unit, lang),
+            localise(significant(now[c.name], 4), lang),
+        )
         for rows in curves.values()
         for c in rows
         if np.isfinite(now[c.name])
@@ -134,7 +149,8 @@ def _sentences(said: Mapping[str, Any], found: Exploration, driver: Parameter, l
     unit = unit_text(driver.unit, lang)
     unit = unit if driver.unit == "deg" else f" {unit}"
     ranges = [
-        said["range"].format(*(f"{localise(significant(v, 5), lang)}{unit}" for v in ends)) for ends in found.ranges
+        said["range"].format(*(f"{localise(significant(v, 5), lang)}{unit}" for v in ends))
+        for ends in found.ranges
     ]
     sentences = [said["types"][found.type]] if found.type else []
     if not ranges:
@@ -155,7 +171,9 @@ def _gap(said: Mapping[str, Any], gap: float | None, lang: str) -> list[str]:
 def _svg(drawing: Any, sentences: list[str]) -> str:
     width, height = (f"{x:.6g}" for x in drawing.size)
     label = Markup.escape(" ".join(sentences))
-    lines = "".join(track.svg(0) for track in drawing.tracks if not (track.effect == "position" and track.mark))
+    lines = "".join(
+        track.svg(0) for track in drawing.tracks if not (track.effect == "position" and track.mark)
+    )
     return (
         f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width} {height}" role="img" aria-label="{label}">'
         f'<g fill="none" stroke="#000" stroke-linecap="round" stroke-linejoin="round">{lines}</g></svg>'

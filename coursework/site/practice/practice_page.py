@@ -16,6 +16,7 @@ from coursework.database.progress import PersonProgress
 from coursework.marking.marking import mark
 from coursework.rendering import motion_page, views
 from coursework.rendering.displayed import DisplayedAnimation
+from coursework.scenes.animation import told_by_motion
 from coursework.scenes.gauges import EFFECTS
 from coursework.selfstudy.attempt import CheckedAnswers
 from coursework.selfstudy.mastery import RIGHT
@@ -273,18 +274,20 @@ def solution(request: Request) -> Response:
 
 
 def motion(request: Request) -> Response:
-    """Return the mechanism in motion; with its numbers once every answer is correct, or after the solution
-    was shown."""
+    """Return the mechanism in motion: as its figure alone, until every question is answered or its solution was shown, and
+    not before those of which the motion itself is the answer."""
     work = _worksheet(request)
     if not work.variant.exercise.is_animated:
         raise HTTPException("page", 404)
-    is_answered = work.attempt.is_example or set(work.attempt.marked().right) >= {
-        part.id for part in work.variant.parts if not part.sort.is_open
-    }
-    key = ("motion", work.exercise, work.seed, work.variant.lang, is_answered)
-    names = request.site.cache.get(key, lambda: _motion(work.variant, is_answered))
-    more = {"sheet_page": work, "motion_title": work.variant.text.title, "is_piece": request.is_fragment}
-    return request.render("site/student/practice_motion", **{**more, "motion": names})
+    open_parts = work.open_parts()
+    names: dict[str, Any] = {
+        "sheet_page": work, "motion_title": work.variant.text.title, "is_piece": request.is_fragment, "own": BOX_PREFIX,
+        "first_to_answer": [(n, k) for n, k in open_parts.items() if n in told_by_motion(work.variant)],
+    }  # fmt: skip
+    if not names["first_to_answer"]:
+        key = ("motion", work.exercise, work.seed, work.variant.lang, not open_parts)
+        names["motion"] = request.site.cache.get(key, lambda: _motion(work.variant, not open_parts))
+    return request.render("site/student/practice_motion", **names)
 
 
 def _motion(variant: Any, is_answered: bool) -> dict[str, Any]:

@@ -50,11 +50,13 @@
     const reply = await fetch(motion.dataset.piece, { headers: { "HX-Request": "true" } });
     if (!reply.ok || reply.redirected) throw new Error("no motion");
     motion.innerHTML = await reply.text();
+    motion.focus();
+    const data = motion.querySelector("#motion-data");
+    if (!data) return;
     const script = document.createElement("script");
     script.src = motion.dataset.script;
     document.body.append(script);
-    button.hidden = true;
-    motion.focus();
+    button.hidden = "answered" in data.dataset;  // otherwise it brings more, once all is answered
   }
   if (motion) {
     const button = form.querySelector("button[value=motion]");
