@@ -205,9 +205,14 @@ class Exploration:
 
     @property
     def ranges(self) -> list[tuple[float, float]]:
-        """Ranges of the driver in which the mechanism closes, each from its first step to its last."""
+        """Ranges of the driver in which the mechanism closes, each from its first step to its last; one that passes 0
+        degrees goes from the larger angle to the smaller."""
         edges = np.flatnonzero(np.diff(np.concatenate([[False], self.closes, [False]]).astype(int)))
-        return [(float(self.steps[a]), float(self.steps[b - 1])) for a, b in edges.reshape(-1, 2).tolist()]
+        found = [(float(self.steps[a]), float(self.steps[b - 1])) for a, b in edges.reshape(-1, 2).tolist()]
+        if len(found) > 1 and self.driver.jack is None and self.closes[0]:
+            (_, end), *others, (start, _) = found
+            return [*others, (start, end)]
+        return found
 
     # ------------------------------------------------------------------------- mobility
 

@@ -8,7 +8,7 @@
   let running = false, place = 0, before = 0;
 
   // --------------------------------------------------------------- the figure
-  // What moves stands palely where the statement shows it.
+  // What moves stands palely where it began.
   const ghost = piece("g", "ghost");
   things.forEach(([node]) => {
     if (node.dataset.effect !== undefined || node.dataset.label !== undefined) return;

@@ -52,8 +52,13 @@ def test_the_sheets_position_comes_first_and_a_loop_ends_where_it_began(name):
 def test_a_full_turn_visits_every_angle_once_the_way_the_driver_turns(name):
     moved = next(animation(name, seed) for seed in range(1, 30) if animation(name, seed).turns)
     speed = moved.variant.given.get(moved.variant.exercise.spec.driver.speed, 1.0)
-    steps = np.diff(np.unwrap(moved.angles[list(moved.order)], period=360))
-    assert steps == pytest.approx(np.full(36, np.sign(speed) * 10.0))
+    turned = np.unwrap(moved.angles[list(moved.order)], period=360)
+    steps = np.diff(turned) * np.sign(speed)
+    assert steps.sum() == pytest.approx(360)
+    assert ((steps > 0) & (steps <= 10 + 1e-9)).all()
+    # Every tenth degree, and others between them where something goes fast.
+    tenths = turned[0] + np.sign(speed) * np.arange(0.0, 361.0, 10.0)
+    assert abs(turned[:, None] - tenths).min(axis=0) == pytest.approx(np.zeros(37), abs=1e-6)
 
 
 def test_a_linkage_that_does_not_turn_fully_swings_between_its_limits_and_back(four_bar_that_swings):

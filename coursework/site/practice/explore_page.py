@@ -5,7 +5,8 @@ Its numbers come from the address, or from a variant that is drawn for this page
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from html import escape
 from typing import Any
 from urllib.parse import urlencode
 
@@ -17,7 +18,7 @@ from coursework.database.permissions import Permission
 from coursework.errors import CannotAssemble, CourseworkError
 from coursework.figures.plot import Axis, Plot
 from coursework.language.numbers import localise, plain, significant, unit_text
-from coursework.scenes.exploration import Exploration, Parameter, parameters
+from coursework.scenes.exploration import Curve, Exploration, Parameter, parameters
 from coursework.site.frame.pool import FIRST_SEED
 from coursework.site.frame.requests import HTTPException, Request, Route
 from coursework.site.papers.assignment_state import published_states
@@ -27,6 +28,7 @@ SEED = (
 )  #: of the variant whose numbers the page begins with: one of no class and of no practice
 _PLOT_MM = 62.0  #: width of a plot: its numbers can be read on a telephone
 _EVERY = 2  #: steps of a turn between two points of a plot
+_NOTHING: Mapping[str, Any] = {"closes": False, "figure": "", "plots": (), "numbers": (), "is_jack": False}
 EFFECTS = ("position", "velocity", "acceleration", "forces")
 
 
@@ -103,9 +105,9 @@ def _shown(
         sentences, curves = _sentences(said, found, driver, lang), {e: found.curves(e) for e in EFFECTS}
         now = found.values_now()
     except CannotAssemble as fault:
-        return {"sentences": [said["nowhere"], *_gap(said, Exploration.gap_of(fault), lang)], "closes": False}
+        return {**_NOTHING, "sentences": [said["nowhere"], *_gap(said, Exploration.gap_of(fault), lang)]}
     except CourseworkError:
-        return {"sentences": [said["undefined"]], "closes": False}
+        return {**_NOTHING, "sentences": [said["undefined"]]}
     exercise = typical.exercise
     symbol, unit = exercise.symbol(driver.name), unit_text(driver.unit, lang)
     axis = Axis(symbol, unit, found.steps[::_EVERY])
@@ -121,7 +123,17 @@ def _shown(
             if np.isfinite(c.values[::_EVERY]).any()
         ]
         if panels:
-            plots.append((said[effect], Markup(Plot(axis, panels, lang, at=found.at, width=_PLOT_MM).svg())))
+            plot = Plot(axis, panels, lang, at=found.at, width=_PLOT_MM).svg()
+            plots.append(
+                (
+                    said[effect],
+                    Markup(
+                        plot.replace(
+                            'role="img"', f'role="img" aria-label="{_heard(said[effect], rows, lang)}"', 1
+                        )
+                    ),
+                )
+            )
     numbers = [
         (
             exercise.solution_symbol(c.name) if c.name in exercise.quantity_names else said["torque"],
@@ -133,6 +145,7 @@ def _shown(
         if np.isfinite(now[c.name])
     ]
     return {
+        **_NOTHING,
         "sentences": sentences,
         "closes": not found.is_open,
         "figure": Markup(_svg(drawing, sentences)) if drawing is not None else "",
@@ -142,6 +155,16 @@ def _shown(
         "is_jack": driver.unit == "mm",
         "at": f"{localise(significant(found.at, 5), lang)}{'' if driver.unit == 'deg' else ' '}{unit}",
     }
+
+
+def _heard(title: str, rows: Sequence[Curve], lang: str) -> str:
+    """Return what is said of a plot to who does not see it: the range of each quantity."""
+    ranges = [
+        f"{c.name} {localise(significant(float(np.nanmin(c.values)), 3), lang)} … {localise(significant(float(np.nanmax(c.values)), 3), lang)} {unit_text(c.unit, lang)}"
+        for c in rows
+        if np.isfinite(c.values).any()
+    ]
+    return escape(f"{title}: {'; '.join(ranges)}")
 
 
 def _sentences(said: Mapping[str, Any], found: Exploration, driver: Parameter, lang: str) -> list[str]:
@@ -170,7 +193,7 @@ def _gap(said: Mapping[str, Any], gap: float | None, lang: str) -> list[str]:
 
 def _svg(drawing: Any, sentences: list[str]) -> str:
     width, height = (f"{x:.6g}" for x in drawing.size)
-    label = Markup.escape(" ".join(sentences))
+    label = escape(" ".join(sentences))
     lines = "".join(
         track.svg(0) for track in drawing.tracks if not (track.effect == "position" and track.mark)
     )

@@ -1,0 +1,104 @@
+"""A finger on the crank, and on the sliders of Explore, in Chromium."""
+
+import pytest
+from site_browser import chromium, context_of, serious, served, too_wide
+from site_people import ZOE, Class
+
+pytestmark = pytest.mark.e2e
+
+
+@pytest.fixture(scope="module")
+def desk(tmp_path_factory):
+    class_ = Class(f"sqlite:///{tmp_path_factory.mktemp('site')}/site.db")
+    with served(class_) as address, chromium() as browser:
+        yield class_, address, browser
+
+
+@pytest.fixture
+def window(desk):
+    class_, address, browser = desk
+    opened = []
+
+    def open_(place, **how):
+        context = context_of(browser, class_, address, ZOE, **how)
+        opened.append(context)
+        page = context.new_page()
+        page.goto(f"{address}{place}")
+        return page
+
+    yield open_
+    for context in opened:
+        context.close()
+
+
+def drag(page, start, steps):
+    """A finger that goes from a place by steps, each (x, y)."""
+    finger = page.context.new_cdp_session(page)
+
+    def touch(kind, *points):
+        finger.send(
+            "Input.dispatchTouchEvent", {"type": kind, "touchPoints": [{"x": x, "y": y} for x, y in points]}
+        )
+
+    touch("touchStart", start)
+    for x, y in steps:
+        touch("touchMove", (start[0] + x, start[1] + y))
+    touch("touchEnd")
+
+
+def test_a_finger_drags_the_crank_and_the_page_stays(window):
+    page = window("/practice/four_bar_motion", is_mobile=True)
+    page.click("button[value=motion]")
+    handle = page.locator("#motion .handle")
+    handle.scroll_into_view_if_needed()
+    box = handle.bounding_box()
+    assert min(box["width"], box["height"]) >= 44
+    lines = "#motion [data-track]"
+    before, scrolled = (
+        page.locator(lines).evaluate_all("all => all.map((n) => n.getAttribute('d'))"),
+        page.evaluate("scrollY"),
+    )
+    angle = page.inner_text("#angle-shown")
+    assert page.locator("#motion .ghost").evaluate("g => getComputedStyle(g).display") == "none"
+    middle = (box["x"] + box["width"] / 2, box["y"] + box["height"] / 2)
+    drag(page, middle, [(9 * k, 14 * k) for k in range(1, 8)])
+    after = page.locator(lines).evaluate_all("all => all.map((n) => n.getAttribute('d'))")
+    assert sum(one != other for one, other in zip(before, after, strict=True)) >= 3
+    assert page.inner_text("#angle-shown") != angle
+    assert page.evaluate("scrollY") == scrolled
+    assert page.locator("#motion .ghost").evaluate("g => getComputedStyle(g).display") != "none"
+    page.focus("#angle")
+    page.keyboard.press("ArrowRight")
+    moved = page.locator(lines).evaluate_all("all => all.map((n) => n.getAttribute('d'))")
+    assert moved != after
+    assert serious(page) == []
+
+
+@pytest.mark.parametrize(("size", "lang"), [("telephone", "fr"), ("desk", "en")])
+def test_a_slider_changes_figure_and_plots_in_place(window, size, lang):
+    page = window("/explore/four_bar_motion", size=size, lang=lang)
+    assert (too_wide(page), serious(page)) == (0, [])
+    figure = page.inner_html("#explored figure")
+    page.focus("#explore input[data-of=of-r2]")
+    with page.expect_response(lambda reply: "r2=" in reply.url):
+        page.keyboard.press("ArrowLeft")
+    page.wait_for_function(
+        "before => document.querySelector('#explored figure').innerHTML !== before", arg=figure
+    )
+    value = page.input_value("#of-r2")
+    assert f"r2={value}" in page.url
+    page.fill("#of-r3", "40")
+    page.wait_for_selector(".explored-told .gap")
+    assert page.locator("#explored svg").count() == 1
+    assert (too_wide(page), serious(page)) == (0, [])
+    page.reload()
+    assert page.input_value("#of-r2") == value
+
+
+def test_without_script_a_button_shows_the_numbers(window):
+    page = window("/explore/slider_crank", script=False)
+    assert page.locator("#explore input[type=range]:visible").count() == 0
+    page.fill("#of-e", "10")
+    page.click("#explore button.main")
+    assert "e=10" in page.url
+    assert page.input_value("#of-e") == "10"
