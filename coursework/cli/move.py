@@ -359,19 +359,29 @@ def _drive(exercise: Any, text: str) -> Motor:
     metavar="E,E",
     help=("Effects to draw: position (paths), velocity, acceleration, coriolis; by default paths only."),
 )
+@click.option(
+    "--figure-alone",
+    is_flag=True,
+    help="Draw no paths, vectors and values: they tell answers of the exercise.",
+)
 @lang_option
 @click.option("--out", type=FilePath(path_type=Path, file_okay=False), default=".", help="Folder to write.")
 @click.pass_context
-def animate(context: click.Context, exercise: str, seed: int, effects: str, lang: str, out: Path) -> None:
+def animate(
+    context: click.Context, exercise: str, seed: int, effects: str, figure_alone: bool, lang: str, out: Path
+) -> None:
     """Draw a moving mechanism over the cycle of its driver, or over the turns of its film.
 
-    Writes an animated picture (SVG) and a page with a slider (HTML).
+    Writes an animated picture (SVG) and a page (HTML) on which the crank is dragged.
     """
     from coursework.system.writing import write_whole
 
     animation = opened(context)[exercise].variant(seed, lang).animation(split_list(effects))
     writes(context, out)
-    pages = {"svg": animation.svg(), "html": animation.html()}
+    pages = {
+        "svg": animation.svg(() if figure_alone else None),
+        "html": animation.html(is_answered=not figure_alone),
+    }
     for ending, text in pages.items():
         write_whole(out / f"{exercise}.{ending}", text.encode("utf-8"))
         click.echo(f"{out / exercise}.{ending}")

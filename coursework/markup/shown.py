@@ -13,16 +13,25 @@ from coursework.markup.markdown import to_notebook_markdown, to_text
 
 @dataclass(frozen=True)
 class SvgPicture:
-    """SVG drawing with its description for readers who cannot see it."""
+    """SVG drawing with its description for readers who cannot see it.
+
+    ``page``: a web page that shows the same and more, under a line ``opens``; front ends that trust no notebook leave it out.
+    """
 
     svg: str
     said: str
+    page: str = ""
+    opens: str = ""
 
     @property
     def html(self) -> str:
         """HTML image of the drawing, which front ends show in untrusted notebooks too."""
         data = base64.b64encode(self.svg.encode()).decode()
-        return f'<img src="data:image/svg+xml;base64,{data}" alt="{escape(self.said)}">'
+        image = f'<img src="data:image/svg+xml;base64,{data}" alt="{escape(self.said)}">'
+        if not self.page:
+            return image
+        frame = f'<iframe srcdoc="{escape(self.page)}" title="{escape(self.said)}" loading="lazy" width="100%" height="640"></iframe>'
+        return f"{image}<details><summary>{escape(self.opens)}</summary>{frame}</details>"
 
 
 class NotebookDisplay:

@@ -14,9 +14,10 @@ from coursework.sheets.drawings import stated_polygons
 class DisplayedAnimation(Animation):
     """An animation with its page."""
 
-    def html(self) -> str:
-        """One page with a slider for the driver's angle: it fetches nothing, and without script stands still."""
-        return renderer_of(self.variant.exercise.folder).motion_html(self)
+    def html(self, *, is_answered: bool = True) -> str:
+        """Return one page with a handle and a slider for the driver's angle: it fetches nothing, and without script stands
+        still. Before the questions are answered it shows the figure alone."""
+        return renderer_of(self.variant.exercise.folder).motion_html(self, is_answered=is_answered)
 
 
 class DisplayedConstruction(Construction):

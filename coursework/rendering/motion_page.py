@@ -19,8 +19,10 @@ from coursework.rendering.keeping import in_script
 from coursework.scenes.animation import Animation
 
 
-def page(folders: Sequence[Path], animation: Animation, paper: str = "a4") -> str:
-    """Return the whole page, in the variant's language."""
+def page(
+    folders: Sequence[Path], animation: Animation, paper: str = "a4", *, is_answered: bool = True
+) -> str:
+    """Return the whole page, in the variant's language; the figure alone before the questions are answered."""
     variant = animation.variant
     names = {
         "lang": variant.lang,
@@ -28,7 +30,7 @@ def page(folders: Sequence[Path], animation: Animation, paper: str = "a4") -> st
         "title": animation.title,
         "variant": f"{variant.exercise.name} {variant.seed}",
         "sheet": {"course": variant.exercise.folder.title(variant.lang), "title": animation.title},
-        **context(animation),
+        **context(animation, is_answered=is_answered),
     }
     return render(environment_of(tuple(folders), variant.lang), "motion/motion.html.j2", names)
 

@@ -217,11 +217,11 @@ class Renderer:
             reports.source(self.template_folders, report, self.paper), self.template_folders
         )
 
-    def motion_html(self, animation: Animation) -> str:
+    def motion_html(self, animation: Animation, *, is_answered: bool = True) -> str:
         """Return a mechanism in motion as one web page that fetches nothing; its one script is in the page."""
         from coursework.rendering import motion_page
 
-        return motion_page.page(self.template_folders, animation, self.paper)
+        return motion_page.page(self.template_folders, animation, self.paper, is_answered=is_answered)
 
     def terminal(self, handout: Handout) -> str:
         """Return a handout as plain text."""

@@ -259,11 +259,11 @@ class Animation(Reel):
         text = " ".join(section.text.split())
         return typeset(text, self.variant.lang) or self.title
 
-    def svg(self) -> str:
-        """Return the moving figure as SVG without scripts; it stands still for readers who prefer reduced
-        motion."""
+    def svg(self, effects: Sequence[str] | None = None) -> str:
+        """Return the moving figure as SVG without scripts, with its effects or with others; it stands still for readers
+        who prefer reduced motion."""
         return moving_svg(
-            self.drawing(self.effects),
+            self.drawing(self.effects if effects is None else effects),
             order=self.order,
             first=self.first,
             seconds=self.seconds,

@@ -133,6 +133,18 @@ class StudyAttempt:
         return not {e["part"] for e in self._happened(REVEAL)}.isdisjoint((part.id, part.quantity))
 
     @property
+    def open_parts(self) -> dict[str, int]:
+        """Numbers of the questions that are neither answered nor given up, by part; of questions that are judged."""
+        if self.is_example:
+            return {}
+        right = self.marked().right
+        return {
+            part.id: number
+            for number, part in enumerate(self.variant.parts, 1)
+            if not (part.id in right or part.sort.is_open or self.is_revealed(part))
+        }
+
+    @property
     def is_example(self) -> bool:
         """True if the variant was shown with its solution, so that it no longer counts."""
         return any(self._happened(EXAMPLE))

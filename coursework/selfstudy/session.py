@@ -19,6 +19,7 @@ from coursework.markup.shown import NotebookDisplay, SvgPicture
 from coursework.model import Part
 from coursework.rendering.displayed import DisplayedAnimation
 from coursework.rendering.views import offered, points_number
+from coursework.scenes.animation import told_by_motion
 from coursework.scenes.gauges import EFFECTS
 from coursework.selfstudy import hints, predictions, wording
 from coursework.selfstudy.attempt import (
@@ -235,7 +236,7 @@ class StudySession:
         """Return the mechanism over its cycle; ``effects`` as in
         :class:`~coursework.scenes.animation.Animation`.
 
-        Unless told, paths and velocities, where the solution states them.
+        Unless told, paths and velocities, where the solution states them; the figure alone while questions are left.
 
         Raises
         ------
@@ -253,10 +254,15 @@ class StudySession:
         except WrongValue:
             displayed = ", ".join(dict.fromkeys(("position", *DisplayedAnimation(self.variant).available)))
             raise wording.refused(self.variant.lang, "no_effect", names=displayed) from None
+        left = self._attempt.open_parts
+        if told := [name for name in told_by_motion(self.variant) if name in left]:
+            return self._display(self._texts["motion_tells"].format(names=_names(told)))
         if not effects:
             usual = [e for e in ("position", "velocity") if e in moving.available]
             moving = DisplayedAnimation(self.variant, usual)
-        return self._display(SvgPicture(moving.svg(), moving.title))
+        page, opens = moving.html(is_answered=not left), self._texts["motion_drag"]
+        picture = SvgPicture(moving.svg(() if left else None), moving.title, page, opens)
+        return self._display(*([self._texts["motion_left"]] if left else []), picture)
 
     # -------------------------------------------------------------- predictions
 

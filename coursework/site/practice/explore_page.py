@@ -18,6 +18,7 @@ from coursework.database.permissions import Permission
 from coursework.errors import CannotAssemble, CourseworkError
 from coursework.figures.plot import Axis, Plot
 from coursework.language.numbers import localise, plain, significant, unit_text
+from coursework.language.words import words
 from coursework.scenes.exploration import Curve, Exploration, Parameter, parameters
 from coursework.site.frame.pool import FIRST_SEED
 from coursework.site.frame.requests import HTTPException, Request, Route
@@ -45,7 +46,7 @@ def explore(request: Request) -> Response:
     read = {p.name: p.value(texts[p.name]) for p in choices if texts[p.name]}
     values = {**usual(typical, choices), **{n: v for n, v in read.items() if v is not None}}
     key = (name, typical.exercise.version, request.lang, tuple(values.values()))
-    shown = site.explored.get(key, lambda: _shown(request, typical, choices, values))
+    shown = site.explored.get(key, lambda: shown_mechanism(request.lang, typical, choices, values))
     names = {
         "exercise": name, "explore_title": typical.text.title, "explored": shown, "is_piece": request.is_fragment,
         "rows": [_row(request, typical, p, values[p.name]) for p in choices],
@@ -94,11 +95,11 @@ def _refuse_in_assignment(request: Request, name: str) -> None:
 # ------------------------------------------------------------------ what is shown
 
 
-def _shown(
-    request: Request, typical: Any, choices: tuple[Parameter, ...], values: Mapping[str, Any]
+def shown_mechanism(
+    lang: str, typical: Any, choices: tuple[Parameter, ...], values: Mapping[str, Any]
 ) -> dict[str, Any]:
-    """Return figure, sentences, numbers and plots."""
-    said, lang, driver = request.words["explore"], request.lang, choices[-1]
+    """Return figure, sentences, numbers and plots for the values of the parameters."""
+    said, driver = words(lang, "site")["explore"], choices[-1]
     try:
         found = Exploration(typical.exercise, typical.given, values, lang)
         drawing = found.drawing()

@@ -279,7 +279,7 @@ def motion(request: Request) -> Response:
     work = _worksheet(request)
     if not work.variant.exercise.is_animated:
         raise HTTPException("page", 404)
-    open_parts = work.open_parts()
+    open_parts = work.attempt.open_parts
     names: dict[str, Any] = {
         "sheet_page": work, "motion_title": work.variant.text.title, "is_piece": request.is_fragment, "own": BOX_PREFIX,
         "first_to_answer": [(n, k) for n, k in open_parts.items() if n in told_by_motion(work.variant)],

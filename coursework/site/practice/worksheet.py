@@ -356,17 +356,6 @@ class Worksheet:
             "copied": checked.copied,
         }
 
-    def open_parts(self) -> dict[str, int]:
-        """Return the numbers of the questions that are neither answered nor given up, by part."""
-        if self.attempt.is_example:
-            return {}
-        right = self.attempt.marked().right
-        return {
-            name: number
-            for number, name in enumerate(self.parts, 1)
-            if not (name in right or self._is_open(name) or self._is_revealed(name))
-        }
-
     def _is_open(self, name: str) -> bool:
         return self.parts[name].sort.is_open
 
