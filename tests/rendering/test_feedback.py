@@ -16,7 +16,7 @@ from paper_samples import COURSE, bare, heading
 from paper_samples import feedback as paper_feedback
 from pdf_text import page_texts
 from rendering_samples import answer_sheet, feedback_sheet
-from sweeps import sampled
+from sweeps import sampled, seeds
 from tables import each_row
 
 from coursework.gradebook.columns import VERDICTS
@@ -73,20 +73,21 @@ def together(pages: list[str], words_of: list[str]) -> bool:
 
 
 @every_language
-@each_row("seed", range(6))
-def test_a_question_and_all_that_is_said_of_it_stand_on_one_page(lang, seed):
-    sheet = synthetic(lang, 25, seed)
-    whole = FeedbackPaper(heading(lang), (sheet, synthetic(lang, 8, seed + 100)), 1.0, 2.0, "12")
-    for pages, sheets in (
-        (page_texts(RENDERER.pdf(sheet)), [sheet]),
-        (page_texts(RENDERER.paper_pdf(whole)), whole.sheets),
-    ):
-        assert len(pages) > 2
-        for one in sheets:
-            for line in one.lines:
-                number = line.question.number
-                said = [f"Debut{number}x", f"Fin{number}x"] if feedback.note(line, lang) else []
-                assert together(pages, [f"Quest{number}x", *said])
+@seeds(2, 6)
+def test_a_question_and_all_that_is_said_of_it_stand_on_one_page(lang, seeds):
+    for seed in seeds:
+        sheet = synthetic(lang, 25, seed)
+        whole = FeedbackPaper(heading(lang), (sheet, synthetic(lang, 8, seed + 100)), 1.0, 2.0, "12")
+        for pages, sheets in (
+            (page_texts(RENDERER.pdf(sheet)), [sheet]),
+            (page_texts(RENDERER.paper_pdf(whole)), whole.sheets),
+        ):
+            assert len(pages) > 2
+            for one in sheets:
+                for line in one.lines:
+                    number = line.question.number
+                    said = [f"Debut{number}x", f"Fin{number}x"] if feedback.note(line, lang) else []
+                    assert together(pages, [f"Quest{number}x", *said])
 
 
 @every_language
