@@ -97,9 +97,7 @@ def _literal(content: bytes, start: int) -> tuple[bytes, int]:
 def _unescaped(data: bytes) -> bytes:
     if b"\\" not in data:
         return data
-    return _ESCAPE.sub(
-        lambda e: bytes([int(e[1], 8)]) if e[1].isdigit() else _ESCAPED.get(e[1], e[1]), data
-    )
+    return _ESCAPE.sub(lambda e: bytes([int(e[1], 8)]) if e[1].isdigit() else _ESCAPED.get(e[1], e[1]), data)
 
 
 def _letters(font: bytes, objects: dict[int, bytes]) -> dict[int, str]:

@@ -164,8 +164,9 @@ def test_a_point_is_right_within_its_distance(variant):
     assert verdicts(variant, corner=x)["corner"] == "unreadable"
 
 
-def test_the_promises_hold_for_it(course):
-    report = checks.check(coursework.open_course(course)["sums"], 30)
+@pytest.mark.parametrize("count", [10, pytest.param(30, marks=pytest.mark.slow)])
+def test_the_promises_hold_for_it(course, count):
+    report = checks.check(coursework.open_course(course)["sums"], count)
     assert report.failures == []
     assert report.counts["rounded, judged together"] > 0
 

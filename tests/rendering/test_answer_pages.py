@@ -195,8 +195,7 @@ def built(tmp_path_factory):
     roster.write_text("student,lang\nAnn Lee,en\nZoé Dupont,fr\n", "utf-8")
     usual = ["build", "grashof", "coriolis", "--roster", str(roster), "--formats", "pdf,html"]
     assert run([*usual, "--out", str(folder / "plain")]) == 0
-    for out in ("scan", "again"):
-        assert run([*usual, "--with", "scan,booklet", "--out", str(folder / out)]) == 0
+    assert run([*usual, "--with", "scan,booklet", "--out", str(folder / "scan")]) == 0
     return folder
 
 
@@ -204,7 +203,10 @@ def tree(folder):
     return {p.relative_to(folder).as_posix(): p.read_bytes() for p in folder.rglob("*") if p.is_file()}
 
 
+@pytest.mark.e2e
 def test_two_builds_with_answer_pages_are_the_same_bytes(built):
+    usual = ["build", "grashof", "coriolis", "--roster", str(built / "class.csv"), "--formats", "pdf,html"]
+    assert run([*usual, "--with", "scan,booklet", "--out", str(built / "again")]) == 0
     assert tree(built / "scan") == tree(built / "again")
 
 
