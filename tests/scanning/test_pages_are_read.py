@@ -119,11 +119,12 @@ def test_a_good_scan_is_read_whole_whatever_the_pen(pen, sheet):
     assert [f.text for f in found.fields] == [w.text for w in wrote]
 
 
-@each_row("turn", [1, 2, 3])
-def test_a_page_says_the_same_however_it_is_turned(turn, sheet):
+def test_a_page_says_the_same_however_it_is_turned(sheet):
     filled, _ = answered(sheet, 11)
     upright = scanned(filled, Scan(dpi=200), np.random.default_rng(0))
-    assert told(read(np.rot90(upright, turn))) == told(read(upright))
+    says = told(read(upright))
+    for turn in (1, 2, 3):
+        assert told(read(np.rot90(upright, turn))) == says, turn
 
 
 @each_row("corner", [0, 2, 3])
