@@ -232,7 +232,7 @@ JUDGED = [name for name in COURSE.names if any(part.judge for part in COURSE[nam
 ABSURD = ("0", "1e308", "-1e308", "1e-320")
 
 
-@pytest.mark.parametrize("name", sampled(JUDGED, JUDGED[::9]))
+@pytest.mark.parametrize("name", sampled(JUDGED, JUDGED[9:10]))
 def test_a_judge_answers_for_every_absurd_answer(name):
     """Each part of a judge alone, beside right answers, and each left out of an absurd sheet."""
     (variant,) = COURSE[name].variants([3], parts=("all",))
