@@ -232,7 +232,7 @@ def test_an_angle_and_itself_in_radians_are_one_answer():
 @settings(max_examples=250, deadline=None)
 def test_two_numbers_are_one_only_where_they_agree(one, other, form):
     assume(min(abs(one), abs(other)) > 4)  # half a digit of a smaller one is more than 1.5 % of it
-    for two in (other, one.quantize(Decimal("0.1"))):
+    for two in (other, one.quantize(Decimal("0.1")), one.quantize(Decimal("0.1")) + Decimal("0.2")):
         reading = read_number(form.format(one, two), "mm")
         if abs(one - two) <= Decimal("0.05"):
             assert reading.values == (float(two if "=" in form else one),)

@@ -29,6 +29,7 @@ PAGE = example_page()
 
 def few_and_all(rows, few):
     """The first rows, and all of them, slow."""
+    rows = list(rows)
     return [rows[:few], pytest.param(rows, marks=pytest.mark.slow)]
 
 
