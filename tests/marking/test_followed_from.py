@@ -45,5 +45,5 @@ def test_no_more_questions_are_named_than_an_answer_follows_from(names):
                 if fits_followed(variant.key, part, reading, part, left, some) is not None:
                     more.append((variant.exercise.name, part.id, told, some))
                     break
-    assert tried > len(names)
+    assert tried > 50 * len(names) / len(COURSE.names)
     assert not more, more
