@@ -9,7 +9,7 @@ from contextlib import suppress
 
 _OBJECT = re.compile(rb"(?<!\d)(\d+) 0 obj\b(.*?)endobj", re.DOTALL)
 _STREAM = re.compile(rb"stream\r?\n(.*?)\r?\nendstream", re.DOTALL)
-_TOKEN = re.compile(rb"/(\w+) [\d.]+ Tf|\(|<([0-9A-Fa-f]+)>")
+_TOKEN = re.compile(rb"/(\w+) [\d.]+ Tf|\(((?:[^\\()]|\\.)*)\)|\(|<([0-9A-Fa-f]+)>", re.DOTALL)
 _IN_LITERAL = re.compile(rb"\\.|[()]", re.DOTALL)
 _ESCAPE = re.compile(rb"\\([0-7]{1,3}|.)", re.DOTALL)
 _ESCAPED = {b"n": b"\n", b"r": b"\r", b"t": b"\t", b"b": b"\b", b"f": b"\f"}
@@ -73,12 +73,15 @@ def _said(content: bytes, fonts: dict[bytes, dict[int, str]]) -> Iterator[str]:
         if found[1]:
             letters = fonts.get(found[1], {})
             continue
-        if found[2]:
-            data = bytes.fromhex(found[2].decode())
+        if found[3]:
+            data = bytes.fromhex(found[3].decode())
+        elif found[2] is not None:
+            data = _unescaped(found[2])
         else:
             data, place = _literal(content, place)
         # A glyph is two bytes.
-        yield from (letters.get(int.from_bytes(data[k : k + 2], "big"), "") for k in range(0, len(data), 2))
+        glyphs = (int.from_bytes(data[k : k + 2], "big") for k in range(0, len(data), 2))
+        yield "".join([letters.get(glyph, "") for glyph in glyphs])
 
 
 def _literal(content: bytes, start: int) -> tuple[bytes, int]:
@@ -88,11 +91,13 @@ def _literal(content: bytes, start: int) -> tuple[bytes, int]:
         depth += {b"(": 1, b")": -1}.get(mark[0], 0)
         if not depth:
             break
-    data = _ESCAPE.sub(
-        lambda e: bytes([int(e[1], 8)]) if e[1].isdigit() else _ESCAPED.get(e[1], e[1]),
-        content[start : mark.start()],
-    )
-    return data, mark.end()
+    return _unescaped(content[start : mark.start()]), mark.end()
+
+
+def _unescaped(data: bytes) -> bytes:
+    if b"\\" not in data:
+        return data
+    return _ESCAPE.sub(lambda e: bytes([int(e[1], 8)]) if e[1].isdigit() else _ESCAPED.get(e[1], e[1]), data)
 
 
 def _letters(font: bytes, objects: dict[int, bytes]) -> dict[int, str]:

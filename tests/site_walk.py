@@ -4,14 +4,17 @@ from __future__ import annotations
 
 import io
 import re
+import tempfile
 import zipfile
 from collections.abc import Mapping
 from datetime import timedelta
+from functools import cache
 from html.parser import HTMLParser
+from pathlib import Path
 from types import MappingProxyType
 from typing import NamedTuple
 
-from site_people import MAX, TEACHER, ZOE, Class
+from site_people import MAX, TEACHER, ZOE, Class, pristine
 from sqlalchemy import update
 
 from coursework.database.assignments import put_issued
@@ -45,8 +48,23 @@ class Filled(Class):
     """Two students with an assignment of one exercise, handed in, and what each typed; ``number`` is the assignment's."""
 
     def __init__(self, url):
+        path, is_new_file = url.removeprefix("sqlite:///"), url.startswith("sqlite:///")
+        is_new_file = is_new_file and not Path(path).exists()
         super().__init__(url)
         self.site.limits = Patient()
+        if is_new_file:
+            vars(self).update(self.made())
+        else:
+            self.fill()
+
+    def copied(self):
+        return _filled().path, _filled().ids
+
+    def made(self):
+        """What is known of the copied database."""
+        return {name: vars(_filled())[name] for name in ("variants", "number", "of_max", "receipts", "token")}
+
+    def fill(self):
         course, at = self.site.course, self.at - timedelta(hours=2)
         self.variants = {name: course[EXERCISE].variant(seed, "en") for name, seed in SEEDS.items()}
         content = {
@@ -123,6 +141,28 @@ class Filled(Class):
             elif isinstance(value, (int, float)) and abs(value) > 1e-3:
                 found.append(re.compile(_digits(f"{abs(value):.9f}")))
         return found
+
+
+class _First(Filled):
+    """The first of a process, which the others are copied from."""
+
+    def __init__(self):
+        self.path = Path(tempfile.mkdtemp()) / "site.db"
+        super().__init__(f"sqlite:///{self.path}")
+        self.site.store.scrub()
+        self.site.store.close()
+
+    def copied(self):
+        return pristine()
+
+    def made(self):
+        self.fill()
+        return {}
+
+
+@cache
+def _filled():
+    return _First()
 
 
 def _digits(number):

@@ -70,5 +70,12 @@ def _git(root: Path, *arguments: str) -> list[str]:
     return done.stdout.splitlines() if done.returncode == 0 else []
 
 
+def at_once(names: Collection[str], few: Collection[str] = HANDFUL) -> pytest.MarkDecorator:
+    """The exercises of a test that goes over ``names`` at once: a few and those that differ always; all of them as a sweep."""
+    always = [name for name in names if name in few or name in changed_exercises()]
+    blocks = [always, pytest.param(list(names), marks=pytest.mark.sweep)]
+    return pytest.mark.parametrize("names", blocks, ids=["few", "all"])
+
+
 #: A test that goes over the whole course at once: a sweep, unless an exercise differs from the main branch.
 whole_course: Callable[[Any], Any] = (lambda test: test) if changed_exercises() else pytest.mark.sweep

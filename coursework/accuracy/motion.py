@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from functools import partial
+from functools import cached_property, partial
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -168,12 +168,10 @@ class _Tightest(_Right):
     def error(self, angle: float, speed: float) -> float:
         return abs(float(np.radians(angle - self._angle)))
 
-    @property
+    @cached_property
     def _angle(self) -> float:
-        if not hasattr(self, "_kept"):
-            table = self.scene.in_time(self.effort, self.duration, rtol=self.rtol, count=1)
-            self._cached = float(table.columns[self.scene.driver.angle][-1])
-        return self._cached
+        table = self.scene.in_time(self.effort, self.duration, rtol=self.rtol, count=1)
+        return float(table.columns[self.scene.driver.angle][-1])
 
 
 class EnergyIntegral:
@@ -221,7 +219,8 @@ class EnergyIntegral:
             return self.context.sqrt(self._inertia(angle) / (2 * energy))
 
         pieces = int(abs(end - start) / (self.context.pi / 4)) + 1
-        return self.context.quad(slowness, self.context.linspace(start, end, pieces + 1))
+        points = self.context.linspace(start, end, pieces + 1)
+        return self.context.quad(slowness, points, method="gauss-legendre")  # smooth: fewer points than tanh-sinh
 
     def _radians(self, degrees: float) -> Any:
         return self.context.mpf(degrees) * self.context.pi / 180

@@ -27,7 +27,8 @@ def complete_tables(connection: Connection) -> None:
     before = _version_of(connection)
     inspector = inspect(connection)
     stored = inspector.get_multi_columns()
-    METADATA.create_all(connection)
+    lacking_tables = [table for table in METADATA.sorted_tables if (None, table.name) not in stored]
+    METADATA.create_all(connection, lacking_tables, checkfirst=False)
     for table in METADATA.sorted_tables:
         names = {column["name"] for column in stored.get((None, table.name), ())}
         lacking = [column for column in table.c if names and column.name not in names]

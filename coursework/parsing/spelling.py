@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import string
 import unicodedata
 from html import unescape
 
@@ -118,10 +119,14 @@ def as_typed(piece: str, text: str) -> str:
     """Return the piece of a text that is spelled so when it is plain, as it was typed: ``s²`` for ``s^(2)``; else the piece itself."""
     if not piece or piece in text or len(text) > _MAX_SEARCHED:
         return piece
-    for start in range(len(text)):
-        if text[start].isspace():
+    last = (_STAYS if "\\" not in text else _STAYS - _OF_COMMANDS) - {piece[-1]}
+    ends = [end for end in range(len(text), 0, -1) if text[end - 1] not in last]
+    for start, char in enumerate(text):
+        if char.isspace() or (char in _STAYS and char != piece[0] and text[start + 1 : start + 2].isascii()):
             continue
-        for end in range(len(text), start, -1):
+        for end in ends:
+            if end <= start:
+                break
             plain = plain_spelling(text[start:end])
             if piece in (plain, spelled_out(plain).strip()):
                 return text[start:end].strip()
@@ -129,6 +134,9 @@ def as_typed(piece: str, text: str) -> str:
 
 
 _MAX_SEARCHED = 80  #: characters of a text of which each piece is tried
+#: What is spelled as itself, unless it ends a command of LaTeX: a piece that is typed so begins and ends with it.
+_OF_COMMANDS = frozenset(string.ascii_letters + "(),;:!")
+_STAYS = _OF_COMMANDS | frozenset(string.digits + "+/=<>|.?&%")
 _DOTS = re.compile(r"\\(d?dot)\s*(?:\{([^{}]*)\}|(\\[A-Za-z]+|[^\W\d_]))")
 _PRIMES = re.compile(r"([A-Za-z][A-Za-z0-9_]*)('{1,2}|\")(?!')")
 _SUBSCRIPT = re.compile(r"\s*_\s*\{\s*([A-Za-z0-9_]*)\s*\}")

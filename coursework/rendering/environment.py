@@ -12,7 +12,16 @@ from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
-from jinja2 import Environment, FileSystemLoader, StrictUndefined, TemplateError, TemplateNotFound, Undefined
+from jinja2 import (
+    BytecodeCache,
+    Environment,
+    FileSystemLoader,
+    StrictUndefined,
+    TemplateError,
+    TemplateNotFound,
+    Undefined,
+)
+from jinja2.bccache import Bucket
 from markupsafe import Markup
 
 from coursework.errors import BadCourse, BadStatement
@@ -23,6 +32,26 @@ from coursework.rendering import feedback, views
 Writer = Callable[[str, str], str]
 
 _FOLDER_WORDS = re.compile("^_?(?:(?:book|desk|feedback|motion|paper|platform|scan|sheet|site)_)*")
+
+
+class _CompiledTemplates(BytecodeCache):
+    """Compiled templates of one back end and language, shared by the courses that read the same files."""
+
+    def __init__(self) -> None:
+        self._known: dict[str, tuple[str, Any]] = {}
+
+    def load_bytecode(self, bucket: Bucket) -> None:
+        checksum, code = self._known.get(bucket.key, ("", None))
+        if checksum == bucket.checksum:
+            bucket.code = code
+
+    def dump_bytecode(self, bucket: Bucket) -> None:
+        self._known[bucket.key] = bucket.checksum, bucket.code
+
+
+@lru_cache(maxsize=64)
+def _compiled(text: Writer, lang: str) -> _CompiledTemplates:
+    return _CompiledTemplates()
 
 
 def environment(
@@ -55,6 +84,7 @@ def environment(
         trim_blocks=True,
         lstrip_blocks=True,
         keep_trailing_newline=True,
+        bytecode_cache=_compiled(text, lang),
         **(marks or {}),
     )
     env.filters.update({name: _marked(make) for name, make in filters.items()})

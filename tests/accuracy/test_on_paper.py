@@ -76,10 +76,13 @@ def test_shares_add_up():
     assert Share().value == 0
 
 
+@pytest.fixture(scope="module")
+def lines(course):
+    return [overview(course[name], quick=True) for name in ("slotted_mechanism", "coriolis")]
+
+
 @each_row("lang", languages())
-def test_the_pages_are_written_in_every_language(course, rows, lang):
-    names = ("slotted_mechanism", "coriolis")
-    lines = [overview(course[name], quick=True) for name in names]
+def test_the_pages_are_written_in_every_language(course, rows, lines, lang):
     for page in (
         paper_report(course, rows, VARIANTS, lang),
         overview_report(course, lines, ("mobility",), lang),

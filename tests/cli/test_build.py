@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 
 import click
+import pytest
 from class_of_three import filled, table, tree
 
 from coursework.cli.make import build
@@ -23,6 +24,7 @@ def test_build_writes_the_tree_of_the_contract(built):
     assert all(data for data in files.values())
 
 
+@pytest.mark.e2e
 def test_the_same_command_gives_the_same_bytes(built, cli, tmp_path):
     again = tmp_path / "again"
     cli(

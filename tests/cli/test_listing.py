@@ -150,6 +150,7 @@ def test_links_that_lead_nowhere_or_in_a_circle_do_no_harm(asked, small_course, 
     assert asked()[1] == []
 
 
+@pytest.mark.e2e
 def test_list_sees_an_edited_exercise(small_course, own_cache, settled, capsys):
     """The command itself, in processes of its own: another version, another part, a broken file."""
 

@@ -9,6 +9,7 @@ import shutil
 import pytest
 from class_of_three import table, tree, write_rows
 from course_of_every_kind import write_course
+from tables import each_row
 
 from coursework.cli import run
 
@@ -240,7 +241,7 @@ def test_a_report_of_a_database_is_that_of_the_folder(one):
     assert tree(one.folder / "report4") == tree(one.folder / "report1")
 
 
-@pytest.mark.parametrize(
+@each_row(
     ("told", "says"),
     [
         (["grade", "first.csv"], "--issued"),

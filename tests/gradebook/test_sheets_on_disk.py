@@ -109,7 +109,7 @@ def both(by_disk, make, tmp_path, batch=3):
     return found
 
 
-@pytest.mark.parametrize("batch", [1, 3, 7])
+@pytest.mark.parametrize("batch", [3, *(pytest.param(n, marks=pytest.mark.slow) for n in (1, 7))])
 def test_a_mixed_class_twice_over(course, tmp_path, by_disk, crashing, batch):
     issued = files_of(course, tmp_path)
     accepted = "student,exercise,part,points,reason\nCy,crank_pin,v,1,well argued\nGil,crank_pin,v,,spoken\n"

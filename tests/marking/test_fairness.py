@@ -64,7 +64,7 @@ def test_the_last_digit_kept_does_not_hang_on_a_last_bit(exponent):
 
 
 @every_exercise
-@pytest.mark.parametrize("digits", KEPT_DIGITS)
+@pytest.mark.parametrize("digits", sampled(KEPT_DIGITS, KEPT_DIGITS[:1]))
 def test_who_rounds_at_every_step_is_right(name, digits):
     report = CheckReport(name)
     drawn = issued(name)
@@ -75,13 +75,14 @@ def test_who_rounds_at_every_step_is_right(name, digits):
     assert (report.counts[f"rounding to {digits}"] > 0) == bool(rounded_parts)
 
 
-def test_rounding_would_cost_honest_students_the_usual_margin():
+@pytest.mark.parametrize("count", [20, pytest.param(60, marks=pytest.mark.slow)])
+def test_rounding_would_cost_honest_students_the_usual_margin(count):
     """Why the margin follows the graph: at three digits many land outside 1 % by rounding alone."""
     report = CheckReport("slider_extras")
-    drawn = issued("slider_extras", 60)
+    drawn = issued("slider_extras", count)
     keys_of(COURSE["slider_extras"], drawn)
     checks.check_rounding_students(COURSE["slider_extras"], drawn, report, (3,))
-    assert report.counts["outside the usual margin at 3"] > 10
+    assert report.counts["outside the usual margin at 3"] > count / 6
 
 
 def test_an_envelope_is_the_sum_of_what_each_step_can_move():

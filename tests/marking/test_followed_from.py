@@ -3,6 +3,8 @@
 import itertools
 import re
 
+from sweeps import at_once
+
 import coursework
 from coursework.language.numbers import significant
 from coursework.language.words import words
@@ -25,9 +27,10 @@ def _wrong_sheet(variant, parts):
     return own
 
 
-def test_no_more_questions_are_named_than_an_answer_follows_from():
+@at_once(COURSE.names, COURSE.names[::4])
+def test_no_more_questions_are_named_than_an_answer_follows_from(names):
     tried, more = 0, []
-    for variant in (COURSE[name].variant(0, "en") for name in COURSE.names):
+    for variant in (COURSE[name].variant(0, "en") for name in names):
         parts = [p for p in variant.parts if p.kind in ("number", "angle") and not p.judge]
         own = _wrong_sheet(variant, parts)
         marking = variant.grade({p.id: repr(own[p.quantity]) for p in parts})
@@ -42,5 +45,5 @@ def test_no_more_questions_are_named_than_an_answer_follows_from():
                 if fits_followed(variant.key, part, reading, part, left, some) is not None:
                     more.append((variant.exercise.name, part.id, told, some))
                     break
-    assert tried > 50
+    assert tried > 50 * len(names) / len(COURSE.names)
     assert not more, more

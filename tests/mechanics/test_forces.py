@@ -159,8 +159,9 @@ def test_a_turn_at_a_constant_rate_costs_no_work_without_friction(name):
 
 
 @pytest.mark.parametrize("name", EXACT)
-@pytest.mark.parametrize(("seed", "angle"), [(0, 33.0), (1, 141.0), (2, 290.0)])
-def test_all_effects_are_those_of_a_reference_of_many_digits(name, seed, angle):
+@pytest.mark.parametrize("pose", sampled([(0, 33.0), (1, 141.0), (2, 290.0)], [(0, 33.0)]))
+def test_all_effects_are_those_of_a_reference_of_many_digits(name, pose):
+    seed, angle = pose
     scene = scene_of(name, seed, ALL)
     exercise, mechanism = COURSE[name], scene.mechanism
     speed, acceleration = scene._speed or 3.0, 11.0

@@ -1,12 +1,18 @@
 """A choice is known by all that people write for it, and by nothing that says another."""
 
+import random
+
 from strategies import CHOICES
+from sweeps import at_once, seeds
 from tables import each_row
 
 import coursework
 from coursework.language.words import words
 from coursework.marking.answers import read
 from coursework.parsing.choices import read_choice
+
+COURSE = coursework.open_course()
+WITH_CHOICES = [n for n in COURSE.names if any(part.kind == "choice" for part in COURSE[n].spec.parts)]
 
 
 @each_row(
@@ -71,13 +77,12 @@ def test_a_mark_that_names_another_choice_than_the_label_behind_it_is_two():
     assert read_choice("2) III", CLASSES).code == "two_values"
 
 
-def test_a_number_names_the_same_choice_of_every_exercise_however_it_is_written():
+@seeds(12, 60)
+def test_a_number_names_the_same_choice_of_every_exercise_however_it_is_written(seeds):
     """No number, Roman numeral or letter reads as a choice whose labels do not begin with that number."""
-    import coursework
-
     romans, course = ("", "I", "II", "III", "IV", "V"), coursework.open_course()
     for name in ("vocabulary", "assour"):
-        for variant in course[name].variants(range(60), "fr"):
+        for variant in course[name].variants(seeds, "fr"):
             for part in (p for p in variant.parts if p.kind == "choice"):
                 known = variant.labels(part)
                 for n in range(1, 6):
@@ -154,11 +159,9 @@ def test_a_sign_or_a_place_never_makes_another_formula(text, code):
     assert read_choice(text, FORMULAS).code == code
 
 
-def test_no_two_cases_of_the_course_have_one_label():
-    import coursework
-
-    course = coursework.open_course()
-    for name in course.names:
+@at_once(WITH_CHOICES, WITH_CHOICES[::4])
+def test_no_two_cases_of_the_course_have_one_label(course, names):
+    for name in names:
         for lang in ("fr", "en"):
             for variant in course[name].variants(range(3), lang):
                 for part in (p for p in variant.parts if p.kind == "choice"):
@@ -215,14 +218,11 @@ def test_a_piece_that_tells_too_little_is_no_choice(text):
     assert values == () or (text, values) == ("même point pièces", ("bodies",))
 
 
-def test_no_piece_of_a_label_reads_as_another_choice():
+@at_once(WITH_CHOICES, WITH_CHOICES[::3])
+def test_no_piece_of_a_label_reads_as_another_choice(course, names):
     """Every run of words of every label of the course, with the others' words dropped or exchanged."""
-    import random
-
-    import coursework
-
-    rng, course, tried = random.Random(5), coursework.open_course(), set()
-    for name in course.names:
+    rng, tried = random.Random(5), set()
+    for name in names:
         for variant in course[name].variants(range(12), "fr"):
             for part in (p for p in variant.parts if p.kind == "choice" and (name, p.id) not in tried):
                 tried.add((name, part.id))
@@ -246,7 +246,7 @@ def test_no_piece_of_a_label_reads_as_another_choice():
                             assert all(
                                 w.strip(",.:()").casefold() in {o.strip(",.:()") for o in own} for w in run
                             ), (text, key, found)
-    assert len(tried) > 40
+    assert len(tried) > 40 * len(names) / len(WITH_CHOICES)
 
 
 def test_a_head_of_two_choices_chooses_neither():

@@ -378,10 +378,10 @@ def test_a_factor_that_may_vanish_is_allowed_below_only(factor, divisor):
     assert same_equation(divided, reference, parameters=("r4", "r5")) is (divisor != MAY_VANISH[-1])
 
 
-def solutions(equation, names, unknown):
+def solutions(equation, names, unknown, draws):
     """Points that solve an equation, by bisection in one variable, the others scattered."""
     rng = np.random.default_rng(5)
-    for _ in range(40):
+    for _ in range(draws):
         values = {name: rng.uniform(0.4, 2.8) for name in names}
         t = np.linspace(-3.1, 3.1, 200)
         gaps = equation.difference({**{n: np.full(t.size, v) for n, v in values.items()}, unknown: t})
@@ -400,12 +400,13 @@ def at(equation, values, unknown, value):
     return equation.difference({**values, unknown: np.array([value])})[0]
 
 
+@pytest.mark.parametrize("draws", [10, pytest.param(40, marks=pytest.mark.slow)])
 @each_row(("text", "reference"), [(t, r) for t, r, same in DIVIDED if same])
-def test_equations_said_to_be_the_same_hold_at_the_same_points(text, reference):
+def test_equations_said_to_be_the_same_hold_at_the_same_points(text, reference, draws):
     names = (*LOOP_NAMES, "x", "y")
     pair = parse_equation(text, names), parse_equation(reference, names)
     for one, other in (pair, pair[::-1]):
-        found = list(solutions(one, names, "theta4"))
+        found = list(solutions(one, names, "theta4", draws))
         assert len(found) > 5
         for values in found:
             assert abs(at(other, values, "theta4", values["theta4"])) < 1e-6

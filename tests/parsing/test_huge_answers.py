@@ -112,10 +112,11 @@ HOSTILE = (
 )
 
 
+@pytest.mark.parametrize("count", [4, pytest.param(8, marks=pytest.mark.slow)])
 @pytest.mark.parametrize("name", ["four_bar_motion", "slider_extras", "slotted_mechanism", "ball_reducer"])
-def test_both_ways_to_mark_a_class_give_one_verdict(name):
+def test_both_ways_to_mark_a_class_give_one_verdict(name, count):
     exercise = COURSE[name]
-    variants = list(exercise.variants(range(1, 8)))
+    variants = list(exercise.variants(range(1, count)))
     keys_of(exercise, variants)
     for turn in range(len(HOSTILE)):
         sheets = []
@@ -145,7 +146,7 @@ def test_both_ways_to_mark_a_class_give_one_verdict(name):
 
 
 @given(st.floats(min_value=36_001, allow_infinity=False) | st.integers(36_001, 10**30), st.floats(-180, 180))
-@settings(max_examples=500, deadline=None)
+@settings(max_examples=200, deadline=None)
 def test_no_huge_number_is_a_direction(huge, reference):
     sort, part = kind_of("angle"), part_of("angle", 0.0, 1.0)
     for text in (repr(huge), f"-{huge!r} deg", huge):

@@ -229,14 +229,15 @@ def test_an_angle_and_itself_in_radians_are_one_answer():
     st.decimals(-400, 400, places=1),
     st.sampled_from(["{} ({})", "{} ({}) mm", "{} = {}"]),
 )
-@settings(max_examples=1000, deadline=None)
+@settings(max_examples=250, deadline=None)
 def test_two_numbers_are_one_only_where_they_agree(one, other, form):
     assume(min(abs(one), abs(other)) > 4)  # half a digit of a smaller one is more than 1.5 % of it
-    reading = read_number(form.format(one, other), "mm")
-    if abs(one - other) <= Decimal("0.05"):
-        assert reading.values == (float(other if "=" in form else one),)
-    else:
-        assert reading.code == "two_values"
+    for two in (other, one.quantize(Decimal("0.1")), one.quantize(Decimal("0.1")) + Decimal("0.2")):
+        reading = read_number(form.format(one, two), "mm")
+        if abs(one - two) <= Decimal("0.05"):
+            assert reading.values == (float(two if "=" in form else one),)
+        else:
+            assert reading.code == "two_values"
 
 
 @each_row(
@@ -420,7 +421,7 @@ def test_a_decimal_in_metres_is_that_decimal_in_millimetres(value):
 
 
 @given(st.text(max_size=60) | ODD, st.sampled_from(["mm", "deg", "1", "rad/s", "N*m"]))
-@settings(max_examples=400, deadline=None)
+@settings(max_examples=200, deadline=None)
 def test_any_text_gives_a_reading_and_keeps_the_text(text, unit):
     for reading in (
         read_number(text, unit),

@@ -348,8 +348,13 @@ def with_junk(count: int, seed: int) -> Iterator[str]:
 # --- in the test suite ----------------------------------------------------------------------
 
 
+def counted(few, many):
+    return pytest.mark.parametrize("count", [few, pytest.param(many, marks=pytest.mark.slow)])
+
+
 @pytest.mark.parametrize(
-    ("seed", "count"), [(0, 2250), *(pytest.param(seed, 3000, marks=pytest.mark.slow) for seed in (1, 2, 3))]
+    ("seed", "count"),
+    [(7, 1200), *(pytest.param(seed, 3000, marks=pytest.mark.slow) for seed in (0, 1, 2, 3))],
 )
 def test_a_nasty_text_is_read_or_said_to_be_unreadable(seed, count):
     with np.errstate(all="raise"):
@@ -360,19 +365,22 @@ def test_a_nasty_text_is_read_or_said_to_be_unreadable(seed, count):
         assert statuses[name, "unreadable"] > 0
 
 
-def test_a_double_reads_back_from_any_accepted_spelling():
-    for text, value in known_values(4_000, seed=11):
+@counted(1_500, 4_000)
+def test_a_double_reads_back_from_any_accepted_spelling(count):
+    for text, value in known_values(count, seed=11):
         reading = read_number(text, "mm")
         assert reading.values[:1] == (value,), (text, value, reading)
 
 
-def test_letters_that_mean_nothing_never_leave_a_number():
-    for text in with_junk(1_000, seed=12):
+@counted(400, 1_000)
+def test_letters_that_mean_nothing_never_leave_a_number(count):
+    for text in with_junk(count, seed=12):
         assert read_number(text, "mm").status == "unreadable", text
 
 
-def test_texts_read_at_once_or_between_spaces_are_read_as_each_alone():
-    texts = list(nasty_texts(1_000, seed=13))
+@counted(400, 1_000)
+def test_texts_read_at_once_or_between_spaces_are_read_as_each_alone(count):
+    texts = list(nasty_texts(count, seed=13))
     values, left = read_numbers(texts, "mm")
     for text, value, later in zip(texts, values, left, strict=True):
         reading = read_number(text, "mm")

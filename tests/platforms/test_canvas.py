@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from functools import cache
 from xml.etree import ElementTree as ET
 
 import pytest
@@ -29,13 +30,15 @@ def drawn(course):
 CANVAS = platform_of("canvas")
 
 
-def packed(pool):
-    (file,) = CANVAS.files(pool)
+@cache
+def packed(drawn, lang):
+    (file,) = CANVAS.files(drawn.pool(lang, CANVAS))
     return str(file.path), file.make()
 
 
-def quiz(pool):
-    return quiz_of(unpacked(packed(pool)[1]))
+@cache
+def quiz(drawn, lang):
+    return quiz_of(unpacked(packed(drawn, lang)[1]))
 
 
 def questions(drawn, lang):
@@ -43,7 +46,7 @@ def questions(drawn, lang):
     variants = {
         (issue.variant.exercise.name, str(issue.variant.seed)): issue.variant for issue in drawn.issues
     }
-    for _, _, some in quiz(drawn.pool(lang, CANVAS)).values():
+    for _, _, some in quiz(drawn, lang).values():
         for one in some:
             exercise, seed, _, lang, part, *_ = one["label"][1:-1].split(" · ")
             variant = variants[exercise, seed].in_language(lang)
@@ -52,9 +55,8 @@ def questions(drawn, lang):
 
 @each_row("lang", LANGS)
 def test_a_student_gets_each_question_once_and_all_points(drawn, lang):
-    pool = drawn.pool(lang, CANVAS)
-    found = quiz(pool)
-    assert sum(pick * points for pick, points, _ in found.values()) == pool.points
+    found = quiz(drawn, lang)
+    assert sum(pick * points for pick, points, _ in found.values()) == drawn.pool(lang, CANVAS).points
     for _, points, some in found.values():
         assert some
         assert {one["points"] for one in some} == {points}
@@ -111,8 +113,7 @@ def test_choices_earn_as_we_pay_them_and_say_what_we_say(drawn, lang):
 
 
 def test_each_question_repeats_statement_figure_and_data(drawn):
-    pool = drawn.pool("en", CANVAS)
-    files = unpacked(packed(pool)[1])
+    files = unpacked(packed(drawn, "en")[1])
     for one, variant, _ in questions(drawn, "en"):
         for name in re.findall(r'src="\$IMS-CC-FILEBASE\$/([^"]+)"', one["text"]):
             ET.fromstring(files[name])
@@ -128,7 +129,7 @@ def test_a_longer_pool_keeps_the_identifiers_of_a_shorter(course):
         {
             one["label"]: one["ident"]
             for _, _, some in quiz(
-                of_exercises(course, ["slotted_mechanism"], count, 0, ["en"], None).pool("en", CANVAS)
+                of_exercises(course, ["slotted_mechanism"], count, 0, ["en"], None), "en"
             ).values()
             for one in some
         }
@@ -228,7 +229,7 @@ def test_numbers_too_small_for_the_page_are_asked_in_a_smaller_unit_and_that_is_
 
 
 def test_hostile_words_change_nothing_but_the_words(bolts):
-    assert len(quiz(bolts.pool("en", CANVAS))) == 4
+    assert len(quiz(bolts, "en")) == 4
     for one, _, _ in questions(bolts, "en"):
         assert "<script" not in one["text"]
         assert "&lt;script&gt;alert(1)&lt;/script&gt;" in one["text"]

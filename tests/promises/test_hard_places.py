@@ -103,7 +103,7 @@ def test_a_block_beside_its_pivot_slides_by_its_acceleration(share, near):
 
 
 @measured
-@pytest.mark.parametrize("seed", SEEDS)
+@pytest.mark.parametrize("seed", sampled(SEEDS, SEEDS[:1]))
 def test_short_links_cost_no_digit(name, seed):
     own = formulas(name, seed)
     assert too_far(own, [{}, *own.small(1e-3), *own.small(1e-9)]) == []
@@ -117,15 +117,15 @@ def test_links_that_are_nearly_equal_cost_no_digit(name, share):
 
 
 @with_angles
-@pytest.mark.parametrize("near", [1e-3, 1e-6, 1e-9])
+@pytest.mark.parametrize("near", sampled([1e-3, 1e-6, 1e-9], [1e-6]))
 def test_angles_beside_the_quarters_cost_no_digit(name, near):
     own = formulas(name, 0)
     assert too_far(own, own.beside_quarters(near)) == []
 
 
 @with_angles
-@pytest.mark.parametrize("seed", SEEDS[:1])
-def test_dead_positions_cost_no_digit_on_either_side(name, seed):
-    own = formulas(name, seed)
-    places = [change for near in (1e-3, 1e-6, 1e-9) for change in own.beside_zeros(near)]
+@pytest.mark.parametrize("near", sampled([1e-3, 1e-6, 1e-9], [1e-6]))
+def test_dead_positions_cost_no_digit_on_either_side(name, near):
+    own = formulas(name, 0)
+    places = own.beside_zeros(near)
     assert too_far(own, [{}, *places]) == []

@@ -1,6 +1,7 @@
 """Order of imports: a file imports from its own folder and from folders below it, wherever the import stands."""
 
 import ast
+from functools import cache
 
 from package_trees import FILES, trees
 from tables import each_row
@@ -16,8 +17,13 @@ def room_of(file):
     return file.split("/")[0].removesuffix(".py")
 
 
+@cache
 def imported(tree):
     """The modules of the package that a file imports, at its top, inside functions or for types alone, with the line."""
+    return [*_imported(tree)]
+
+
+def _imported(tree):
     for node in ast.walk(tree):
         if isinstance(node, ast.Import):
             yield from (
@@ -32,6 +38,7 @@ def imported(tree):
                 yield (whole if file_of(whole) else node.module), node.lineno
 
 
+@cache
 def file_of(module):
     stem = "/".join(module.split(".")[1:])
     if not stem:

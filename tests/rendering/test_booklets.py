@@ -117,6 +117,7 @@ def test_the_table_of_pages_has_a_line_for_each_sheet_whichever_booklet_holds_it
     assert all((tmp_path / "handouts" / r["file"]).exists() for r in rows)
 
 
+@pytest.mark.e2e
 def test_build_writes_booklets_beside_the_single_files(tmp_path):
     roster = tmp_path / "class.csv"
     roster.write_text("student,lang\nZoé,fr\nJohn & Mary,en\nÉlodie #1,fr\n", "utf-8")

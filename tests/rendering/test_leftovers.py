@@ -13,7 +13,7 @@ import pytest
 import typst
 from paper_samples import COURSE, NAMES, bare, heading, paper, solution
 from rendering_samples import handout
-from sweeps import sampled, whole_course
+from sweeps import at_once, sampled, whole_course
 
 from coursework.language.words import languages
 from coursework.rendering.papers import typst_source
@@ -58,9 +58,12 @@ def assert_none_left_over(pages: list[int]) -> None:
 @every_language
 @every_paper
 @pytest.mark.parametrize("seed", [2, *(pytest.param(seed, marks=pytest.mark.slow) for seed in (1, 3, 4))])
-def test_no_handout_has_a_page_of_a_few_questions_that_are_left_over(pages_of_questions, size, lang, seed):
+@at_once(COURSE.names, COURSE.names[::3])
+def test_no_handout_has_a_page_of_a_few_questions_that_are_left_over(
+    pages_of_questions, size, lang, seed, names
+):
     parted = 0
-    for name in COURSE.names:
+    for name in names:
         sheet = COURSE[name].variant(seed, lang).handout("Zoé Martin")
         pages = pages_of_questions(RENDERER.on(size).typst(sheet))
         assert_none_left_over(pages)

@@ -9,13 +9,14 @@ import struct
 import zlib
 from collections import Counter
 from dataclasses import replace
-from itertools import pairwise, permutations
+from itertools import pairwise, permutations, product
 
 import nbformat
 import pytest
 from page_scripts import allowed, digest, runs
 from paper_samples import ALT, COURSE, NAMES, bare, feedback, heading, paper, solution
 from pdf_text import page_texts
+from sweeps import sampled
 from tables import each_row
 
 from coursework.errors import BadInput
@@ -31,6 +32,7 @@ from coursework.sheets.sheet import FeedbackLine
 RENDERER = renderer_of(COURSE.folder)
 every_language = pytest.mark.parametrize("lang", ["fr", "en"])
 every_size = pytest.mark.parametrize("size", PAPERS)
+one_language = pytest.mark.parametrize("lang", sampled(["fr", "en"], ["fr"]))
 KINDS = {
     "full": lambda lang: paper(heading(lang)),
     "cover": lambda lang: paper(heading(lang, cover=True)),
@@ -62,10 +64,12 @@ def full_points(names=NAMES) -> float:
     return sum(p["points"] for n in names for p in COURSE[n].variant(seed=7).record["parts"])
 
 
-@every_language
-@every_size
+@pytest.mark.parametrize(
+    "printed", sampled(product(["fr", "en"], PAPERS), [("fr", "a4"), ("en", "letter")]), ids="-".join
+)
 @every_kind
-def test_every_page_says_whose_it_is_which_seeds_and_which_page_of_how_many(make, size, lang):
+def test_every_page_says_whose_it_is_which_seeds_and_which_page_of_how_many(make, printed):
+    lang, size = printed
     pages = texts(make(lang), size)
     for number, page in enumerate(pages, 1):
         foot = f"Zoé #1 Martin · slotted_mechanism 7 · grashof 8 · four_bar_positions 9page {number} / {len(pages)}"
@@ -87,7 +91,7 @@ def test_the_seeds_alone_stand_at_the_foot_where_the_names_have_no_room():
     assert page_texts(RENDERER.paper_pdf(long))[0].count(variants(long)) == 1
 
 
-@every_language
+@one_language
 @every_kind
 def test_every_paper_is_an_accessible_pdf_and_the_same_bytes_twice(make, lang):
     made = RENDERER.paper_pdf(make(lang))
@@ -142,10 +146,11 @@ def test_no_page_ends_with_a_heading_or_with_one_question_alone(names, size):
 
 
 @every_size
-def test_wherever_an_exercise_comes_its_first_question_has_the_second_on_its_page(size, monkeypatch):
+@pytest.mark.parametrize("step", [6, pytest.param(2, marks=pytest.mark.slow)])
+def test_wherever_an_exercise_comes_its_first_question_has_the_second_on_its_page(size, step, monkeypatch):
     # However little room it is thought to take.
     monkeypatch.setattr(papers, "_start_mm", lambda sheet: 10)
-    for lines in range(0, 30, 2):
+    for lines in range(0, 30, step):
         top = replace(heading("en"), instructions="\n\n".join(["One rule."] * lines))
         pages = texts(paper(top, ("grashof", "slotted_mechanism")), size)
         for place in (1, 2):
@@ -153,7 +158,7 @@ def test_wherever_an_exercise_comes_its_first_question_has_the_second_on_its_pag
             assert f"{place}.2." in page, f"{lines} rules before exercise {place}"
 
 
-@every_language
+@one_language
 def test_a_booklet_gives_each_paper_its_own_numbers_from_an_odd_page_on(lang):
     handed = [paper(heading(lang, f"N{k}"), NAMES[: k + 1]) for k in range(3)]
     made, pages = RENDERER.papers_pdf(handed)
@@ -325,7 +330,7 @@ def test_latex_of_a_paper_names_its_figures_and_closes_what_it_opens(lang):
         assert "2.3" in source
 
 
-@every_language
+@one_language
 def test_a_name_that_no_font_draws_is_printed_with_squares_and_stops_nobodys_paper(lang):
     for made in (paper(heading(lang, "李 明")), solution(heading(lang, "李 明"))):
         assert "□ □" in page_texts(RENDERER.paper_pdf(made))[0]

@@ -12,7 +12,10 @@ from coursework.scanning import digits
 from coursework.scanning.digits import CONFIDENT, EMPTY, read_digits, read_signs
 
 #: Forty of each digit, of MNIST's test set.
-BANK = np.load(Path(__file__).parents[1] / "handwritten_digits.npz")
+with np.load(
+    Path(__file__).parents[1] / "handwritten_digits.npz"
+) as _bank:  # which unpacks an array at each look
+    BANK = dict(_bank)
 
 ONE_WITH_UPSTROKE = [
     [(18, 50), (40, 14), (38, 76)],

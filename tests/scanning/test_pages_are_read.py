@@ -25,6 +25,14 @@ from coursework.scanning.straightening import straightened
 from coursework.sheets.answer_pages import Box
 
 PAGE = example_page()
+
+
+def few_and_all(rows, few):
+    """The first rows, and all of them, slow."""
+    rows = list(rows)
+    return [rows[:few], pytest.param(rows, marks=pytest.mark.slow)]
+
+
 PAPERS = {"ABCDEFGHIJKLM": (PAGE,)}
 READER = simulated.template_reader(plain_digits, 1)
 
@@ -110,30 +118,33 @@ def test_in_black_and_white_doubt_counts_fivefold(bilevel, waits, sheet):
     assert {bool(f.waits) for f in found.fields if f.field.what == "number" and f.text} == {waits}
 
 
-@each_row("pen", simulated.PENS)
-def test_a_good_scan_is_read_whole_whatever_the_pen(pen, sheet):
-    hand = Hand(pen=pen, bank=plain_digits, jitter=0.2, rng=np.random.default_rng(5))
-    filled, wrote = filled_in(sheet, PAGE, hand, odd=0.0)
-    found = read(scanned(filled, Scan(dpi=200, skew=1.0), np.random.default_rng(0)))
-    assert [bool(f.waits) for f in found.fields] == [w.waits for w in wrote]
-    assert [f.text for f in found.fields] == [w.text for w in wrote]
+@pytest.mark.parametrize("rows", few_and_all(simulated.PENS, 2))
+def test_a_good_scan_is_read_whole_whatever_the_pen(rows, sheet):
+    for pen in rows:
+        hand = Hand(pen=pen, bank=plain_digits, jitter=0.2, rng=np.random.default_rng(5))
+        filled, wrote = filled_in(sheet, PAGE, hand, odd=0.0)
+        found = read(scanned(filled, Scan(dpi=200, skew=1.0), np.random.default_rng(0)))
+        assert [bool(f.waits) for f in found.fields] == [w.waits for w in wrote]
+        assert [f.text for f in found.fields] == [w.text for w in wrote]
 
 
-@each_row("turn", [1, 2, 3])
-def test_a_page_says_the_same_however_it_is_turned(turn, sheet):
+def test_a_page_says_the_same_however_it_is_turned(sheet):
     filled, _ = answered(sheet, 11)
     upright = scanned(filled, Scan(dpi=200), np.random.default_rng(0))
-    assert told(read(np.rot90(upright, turn))) == told(read(upright))
+    says = told(read(upright))
+    for turn in (1, 2, 3):
+        assert told(read(np.rot90(upright, turn))) == says, turn
 
 
-@each_row("corner", [0, 2, 3])
-def test_three_marks_are_enough(corner, sheet):
-    filled, wrote = answered(sheet, 2, "black")
-    found = read(scanned(filled, Scan(dpi=200, cut_corner=corner, skew=2.0), np.random.default_rng(0)))
-    assert found.found == "answers"
-    assert [f.text for f in found.fields if not f.waits] == [
-        w.text for w, f in zip(wrote, found.fields, strict=True) if not f.waits
-    ]
+@pytest.mark.parametrize("rows", few_and_all([0, 2, 3], 1))
+def test_three_marks_are_enough(rows, sheet):
+    for corner in rows:
+        filled, wrote = answered(sheet, 2, "black")
+        found = read(scanned(filled, Scan(dpi=200, cut_corner=corner, skew=2.0), np.random.default_rng(0)))
+        assert found.found == "answers"
+        assert [f.text for f in found.fields if not f.waits] == [
+            w.text for w, f in zip(wrote, found.fields, strict=True) if not f.waits
+        ]
 
 
 def test_two_marks_are_not(sheet):
@@ -143,25 +154,29 @@ def test_two_marks_are_not(sheet):
     assert read(scanned(cut, Scan(), np.random.default_rng(0))).found == "not straight"
 
 
-@each_row(
-    "scan",
-    [
-        Scan(dpi=200, skew=9.0, shear=1.0),
-        Scan(dpi=150, perspective=0.05, table=True),
-        Scan(dpi=250, perspective=0.03, curve=3.0, table=True),
-        Scan(dpi=250, fold=0.2),
-    ],
+@pytest.mark.parametrize(
+    "rows",
+    few_and_all(
+        [
+            Scan(dpi=200, skew=9.0, shear=1.0),
+            Scan(dpi=250, perspective=0.03, curve=3.0, table=True),
+            Scan(dpi=250, fold=0.2),
+            Scan(dpi=150, perspective=0.05, table=True),
+        ],
+        3,
+    ),
 )
-def test_boxes_are_found_to_half_a_millimetre(scan, sheet):
-    picture = scanned(sheet, scan, np.random.default_rng(4))
-    flat = straightened(picture, codes_in(picture)[0], PAGE)
-    dark = 255 - flat.ink.astype(float)
-    off = [
-        _off(dark, flat.placed(box))
-        for one in PAGE.fields
-        for box in (*one.digits, *(b for _, b in one.ticks))
-    ]
-    assert np.abs(off).max() < 0.5
+def test_boxes_are_found_to_half_a_millimetre(rows, sheet):
+    for scan in rows:
+        picture = scanned(sheet, scan, np.random.default_rng(4))
+        flat = straightened(picture, codes_in(picture)[0], PAGE)
+        dark = 255 - flat.ink.astype(float)
+        off = [
+            _off(dark, flat.placed(box))
+            for one in PAGE.fields
+            for box in (*one.digits, *(b for _, b in one.ticks))
+        ]
+        assert np.abs(off).max() < 0.5
 
 
 def _off(dark, box):
@@ -232,17 +247,21 @@ def said_of_choice(sheet, write):
     return next(f for f in page.fields if f.field.part == choice.part)
 
 
-@each_row(
-    "write",
-    [
-        lambda hand, box, row: ring(hand, box.x + 2.5, box.y + 2.5, 4.2),
-        lambda hand, box, row: ring(hand, box.right + 2.6, box.y + 2.5, 2.9),
-        lambda hand, box, row: hand.scribble(replace(box, x=row.ticks[-1][1].right + 12, width=20)),
-        lambda hand, box, row: (hand.cross(row.ticks[-1][1]), ring(hand, box.x + 2.5, box.y + 2.5, 4.2)),
-    ],
+@pytest.mark.parametrize(
+    "rows",
+    few_and_all(
+        [
+            lambda hand, box, row: ring(hand, box.x + 2.5, box.y + 2.5, 4.2),
+            lambda hand, box, row: ring(hand, box.right + 2.6, box.y + 2.5, 2.9),
+            lambda hand, box, row: hand.scribble(replace(box, x=row.ticks[-1][1].right + 12, width=20)),
+            lambda hand, box, row: (hand.cross(row.ticks[-1][1]), ring(hand, box.x + 2.5, box.y + 2.5, 4.2)),
+        ],
+        2,
+    ),
 )
-def test_what_is_written_beside_boxes_to_tick_waits(write, sheet):
-    assert said_of_choice(sheet, write).waits == "free"
+def test_what_is_written_beside_boxes_to_tick_waits(rows, sheet):
+    for write in rows:
+        assert said_of_choice(sheet, write).waits == "free"
 
 
 def test_a_cross_may_go_beyond_its_box(sheet):

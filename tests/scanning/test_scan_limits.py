@@ -152,7 +152,7 @@ def test_anothers_page_with_a_pasted_code_waits_for_a_person(built, places, tmp_
     assert [card["waits"] for card in cards] == [OTHER_NAME]
 
 
-@pytest.mark.parametrize("step", [3, pytest.param(1, marks=slow)], ids=["few", "all"])
+@pytest.mark.parametrize("step", [6, pytest.param(1, marks=slow)], ids=["few", "all"])
 @each_row("kind", ["office scanner", "150 dpi", "black and white", "photograph", "light copy", "coffee"])
 def test_an_honest_page_is_never_taken_for_anothers(kind, step, built, places):
     """However it is scanned; and whose it is, where the scan is clean."""

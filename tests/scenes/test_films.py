@@ -81,7 +81,7 @@ def test_a_film_has_its_own_words_and_the_page_says_that_it_starts_over(small_co
     assert data["angles"][72].startswith("360")  # not the first angle once more
 
 
-@pytest.mark.parametrize("lang", ["fr", "en"])
+@pytest.mark.parametrize("lang", ["fr", pytest.param("en", marks=pytest.mark.slow)])
 def test_a_film_without_words_in_a_language_is_a_failure(small_course, lang):
     exercise = coursework.open_course(filmed(small_course))["crank_pin"]
     assert check(exercise, 1, rendered=0).failures == []

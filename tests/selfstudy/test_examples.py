@@ -78,7 +78,7 @@ def test_a_theory_question_is_not_told_by_an_example(lang, here):
             assert label not in text
 
 
-@BOTH
+@pytest.mark.parametrize("lang", sampled(["fr", "en"], ["fr"]))
 def test_examples_go_on_by_themselves_and_count_for_nothing(lang, here):
     session = coursework.study("slotted_mechanism", seed=1, lang=lang)
     levels = [session.example().level for _ in range(LEVELS + 1)]

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import numpy as np
+from sweeps import at_once
 from tables import each_row
 
+import coursework
 from coursework.degrees import acos, angle, atan2, cos, polar, sin, sqrt, wrap
 from coursework.errors import Undefined
 from coursework.quantities.formula_latex import PrintedName, formula_latex, number_latex
@@ -255,8 +257,9 @@ def test_numbers_are_rounded_for_print_alone():
     assert number_latex(1 - 2j, "mm") == r"\left(\num{1} - \num{2}\,i\right)"
 
 
-def test_every_step_of_a_sheet_is_told_by_formula_or_words_and_each_answer_once(course):
-    for name in course.names:
+@at_once(coursework.open_course().names)
+def test_every_step_of_a_sheet_is_told_by_formula_or_words_and_each_answer_once(course, names):
+    for name in names:
         sheet = course[name].variant(4).answer_sheet()
         assert [a.question.id for a in sheet.answers] == [p.id for p in course[name].variant(4).parts]
         for step in sheet.steps:
@@ -290,8 +293,9 @@ def test_a_symbol_of_one_letter_stands_beside_its_factor(letter):
     assert formula_latex(times, shown).startswith(rf"k_a\,{letter} ")
 
 
-def test_each_asked_step_says_which_question_it_answers(course):
-    for name in course.names:
+@at_once(coursework.open_course().names)
+def test_each_asked_step_says_which_question_it_answers(course, names):
+    for name in names:
         for lang in ("fr", "en"):
             variant = course[name].variant(2, lang)
             first = {part.quantity: number for number, part in reversed([*enumerate(variant.parts, start=1)])}
@@ -322,8 +326,9 @@ def test_a_case_ends_its_reason_or_follows_it(course, reason, lang, said):
     assert sheets._words_of(variant, "guide", "oscillates", reason) == said
 
 
-def test_a_remark_bears_the_wrong_value_and_stands_where_it_is_one(course):
-    for name in course.names:
+@at_once(coursework.open_course().names)
+def test_a_remark_bears_the_wrong_value_and_stands_where_it_is_one(course, names):
+    for name in names:
         variant = course[name].variant(3, "en")
         texts = variant.solution_text
         solution = variant.exercise.solution

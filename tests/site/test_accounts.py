@@ -6,7 +6,7 @@ import re
 from datetime import timedelta
 
 import pytest
-from argon2 import PasswordHasher, extract_parameters
+from argon2 import PasswordHasher, Type, extract_parameters
 from site_accounts import PASSWORD, invite, is_in, join, sign_in
 from site_people import HOME, MAX, TEACHER, ZOE
 from sqlalchemy import select, update
@@ -109,6 +109,13 @@ def test_an_unknown_login_costs_what_a_wrong_password_costs(class_of_three, monk
         assert sign_in(class_of_three, login, "not the password")[1].status_code == 401
     known, unknown = tried
     assert known == unknown
+
+
+def test_a_password_costs_who_guesses_19_mebibytes_twice_over(strong_hasher):
+    found = extract_parameters(strong_hasher.hash(PASSWORD))
+    assert found.type is Type.ID
+    assert found.memory_cost >= 19 * 1024
+    assert found.time_cost >= 2
 
 
 def test_a_password_that_is_kept_in_an_older_way_is_kept_anew(class_of_three):

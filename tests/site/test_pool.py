@@ -2,8 +2,11 @@
 
 from threading import Event
 
+import pytest
 from site_people import ZOE, Class
+from sweeps import HANDFUL, slow
 
+from coursework.course.folder import Folder
 from coursework.database.pool import Pooled, put_pooled
 from coursework.site.frame.lru_cache import LRUCache
 from coursework.site.frame.pool import PracticePool
@@ -55,7 +58,10 @@ def test_it_is_filled_once_everything_was_found(class_of_three):
     assert pool.is_filled()
 
 
-def test_what_is_made_ready_changes_no_page(tmp_path):
+@pytest.mark.parametrize("order", [(NAME, *HANDFUL), pytest.param((), marks=slow)], ids=["few", "all"])
+def test_what_is_made_ready_changes_no_page(tmp_path, monkeypatch, order):
+    if order:
+        monkeypatch.setattr(Folder, "study_order", order)
     cold, ready = (Class(f"sqlite:///{tmp_path}/{name}.db") for name in ("cold", "ready"))
     warm(ready.site, Event())
     seen = [one.browser(ZOE, "fr").get("/practice").text for one in (cold, ready)]

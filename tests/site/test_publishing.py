@@ -166,6 +166,7 @@ def test_a_name_is_given_once(class_of_three, staff):
     assert (reply.status_code, "already" in reply.text) == (422, True)
 
 
+@pytest.mark.e2e
 def test_a_large_class_is_dealt_by_another_process_the_same_way(class_of_three, staff, monkeypatch):
     roster = b"student\n" + b"".join(b"S%d\n" % k for k in range(24))
     monkeypatch.setattr(jobs, "_PATIENCE", 0.0)

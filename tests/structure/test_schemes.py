@@ -5,6 +5,8 @@ from __future__ import annotations
 import itertools
 from collections import Counter
 
+import pytest
+from sweeps import slow
 from tables import each_row
 
 from coursework.figures import Figure, contact, ground_pivot, pin, rail, slider
@@ -18,6 +20,13 @@ from coursework.structure.scheme import kinematic_scheme
 
 NUMBERS = range(1000, 1024)
 MECHANISMS = [to_count(n) for n in NUMBERS] + [to_decompose(n).joints for n in NUMBERS]
+
+
+@pytest.fixture(params=[MECHANISMS[1::4], pytest.param(MECHANISMS, marks=slow)], ids=["few", "all"])
+def mechanisms(request):
+    return request.param
+
+
 KINDS = {"revolute": (ground_pivot, pin), "prismatic": (slider,), "higher": (contact,)}
 
 
@@ -43,16 +52,16 @@ def test_a_scheme_of_the_library_has_each_moving_body_and_each_letter(figure):
     assert set(found) == {str(body) for body in graph.moving} | {joint.at for joint in graph.joints}
 
 
-def test_the_scheme_of_a_grown_mechanism_bears_every_body_and_every_letter_once():
-    for joints in MECHANISMS:
+def test_the_scheme_of_a_grown_mechanism_bears_every_body_and_every_letter_once(mechanisms):
+    for joints in mechanisms:
         graph = JointGraph.of(joints)
         blocks = [box.label for box in kinematic_scheme(joints).labels()]
         found = Counter(part for label in blocks for part in label.split(","))
         assert found == Counter([*map(str, graph.moving), *(joint.at for joint in graph.joints)]), joints
 
 
-def test_each_joint_is_drawn_as_what_it_is_and_where_it_holds_the_frame_there_is_hatching():
-    for joints in MECHANISMS:
+def test_each_joint_is_drawn_as_what_it_is_and_where_it_holds_the_frame_there_is_hatching(mechanisms):
+    for joints in mechanisms:
         graph, elements = JointGraph.of(joints), shown(joints)
         for kind, symbols in KINDS.items():
             drawn = [e for e in elements if type(e) in symbols]
@@ -62,8 +71,8 @@ def test_each_joint_is_drawn_as_what_it_is_and_where_it_holds_the_frame_there_is
         assert sum(isinstance(e, rail) for e in elements) == held["prismatic"] + held["higher"]
 
 
-def test_no_bar_comes_near_a_pivot_that_is_not_its_own():
-    for joints in MECHANISMS:
+def test_no_bar_comes_near_a_pivot_that_is_not_its_own(mechanisms):
+    for joints in mechanisms:
         elements = shown(joints)
         pivots = [e.p for e in elements if isinstance(e, ground_pivot | pin)]
         for a, b in (bar for element in elements for bar in element.bars()):
@@ -73,8 +82,8 @@ def test_no_bar_comes_near_a_pivot_that_is_not_its_own():
                 assert gap < 1e-6 or gap > 5.0, joints
 
 
-def test_pivots_are_far_enough_from_each_other_to_be_told_apart():
-    for joints in MECHANISMS:
+def test_pivots_are_far_enough_from_each_other_to_be_told_apart(mechanisms):
+    for joints in mechanisms:
         apart = set(places(JointGraph.of(joints)))
         assert all(abs(a - b) > 10 for a, b in itertools.combinations(apart, 2)), joints
 

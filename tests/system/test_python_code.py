@@ -10,7 +10,7 @@ import pytest
 from coursework.system import python_code
 from coursework.system.python_code import parse
 
-SOURCE = Path(python_code.__file__).parents[1].joinpath("marking", "marking.py").read_text("utf-8")
+SOURCE = Path(python_code.__file__).parents[1].joinpath("marking", "answers.py").read_text("utf-8")
 
 
 @pytest.fixture

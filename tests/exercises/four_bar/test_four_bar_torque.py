@@ -5,6 +5,7 @@ import itertools
 import mpmath
 import numpy as np
 import pytest
+from sweeps import sampled
 from tables import each_row
 
 import coursework
@@ -21,7 +22,7 @@ PLAIN = {
 }  # fmt: skip
 LENGTHS = {name: PLAIN[name] for name in ("r1", "r2", "r3", "r4", "theta2", "mode")}
 
-every_seed = pytest.mark.parametrize("seed", range(20))
+every_seed = pytest.mark.parametrize("seed", sampled(range(20), range(6)))
 
 
 class Motion:

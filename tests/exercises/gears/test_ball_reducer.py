@@ -1,6 +1,7 @@
 """Ball reducer: answers against exact fractions from the no-slip velocities in space, and the notes' misprints."""
 
 from fractions import Fraction
+from functools import cache
 
 import mpmath
 import numpy as np
@@ -211,6 +212,7 @@ def test_the_joint_graph_has_two_contacts_of_ball_and_frame(answer, verdict, poi
 # What follows is read from the drawn elements: where a body is, its marks say.
 
 
+@cache
 def drawn(seed, count=360):
     """The film of a variant in time: the driver's angles, the elements at each instant, the places of A_3."""
     film = Animation(EXERCISE.variant(seed), count=count)

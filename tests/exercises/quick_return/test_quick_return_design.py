@@ -37,7 +37,7 @@ def through_a_crank(stroke, Q, r2):
     return (far + near) / 2, e
 
 
-@pytest.mark.parametrize("seed", sampled(range(12), range(2)))
+@pytest.mark.parametrize("seed", sampled(range(12), range(1)))
 def test_every_crank_shorter_than_half_the_stroke_is_judged_as_its_motion_is(seed):
     variant = EXERCISE.variant(seed, "en")
     given = variant.given

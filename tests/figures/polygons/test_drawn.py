@@ -7,6 +7,7 @@ import math
 import random
 
 import pytest
+from sweeps import seeds
 
 import coursework
 from coursework.errors import BadCourse, UnknownName, WrongValue
@@ -38,9 +39,10 @@ def fits(polygon, chance):
 
 @every_polygon
 @pytest.mark.parametrize("stated", [True, False])
-def test_drawings_within_the_tolerance_are_right_at_any_pole_and_scale(name, stated):
+@seeds(12, 40)
+def test_drawings_within_the_tolerance_are_right_at_any_pole_and_scale(name, stated, seeds):
     chance = random.Random(7)
-    for polygon in polygons(name, range(40)):
+    for polygon in polygons(name, seeds):
         for _ in range(30):
             scale, pole = fits(polygon, chance), complex(chance.uniform(-300, 300), chance.uniform(-300, 300))
             points = on_paper(polygon, scale, pole, TOLERANCE_MM, chance)
@@ -81,8 +83,9 @@ FAULTS = {
 
 @every_polygon
 @pytest.mark.parametrize("kind", FAULTS)
-def test_a_fault_in_a_known_vector_is_named_and_costs_nothing_after_it(name, kind):
-    for polygon in polygons(name, range(60)):
+@seeds(15, 60)
+def test_a_fault_in_a_known_vector_is_named_and_costs_nothing_after_it(name, kind, seeds):
+    for polygon in polygons(name, seeds):
         scale = polygon.size / 100
         right = on_paper(polygon, scale, 20 + 30j)
         known = [q for q, sides in polygon.hangs.items() if len(sides) == 1]
@@ -150,10 +153,11 @@ def test_a_point_off_one_of_its_lines_is_a_wrong_direction_of_that_vector(name):
 
 
 @every_polygon
-def test_nothing_is_accepted_that_is_three_tolerances_off_its_vector(name):
+@seeds(12, 40)
+def test_nothing_is_accepted_that_is_three_tolerances_off_its_vector(name, seeds):
     """Known vectors are told from any others that end more than 2 mm away; lines from points 2 mm off them."""
     chance = random.Random(3)
-    for polygon in polygons(name, range(40)):
+    for polygon in polygons(name, seeds):
         scale = polygon.size / 90
         points = on_paper(polygon, scale, 0j)
         for point, sides in polygon.hangs.items():
@@ -265,8 +269,9 @@ def test_an_honest_drawing_at_ones_own_pole_and_scale_earns_everything_that_is_d
 
 
 @every_polygon
-def test_lengths_alone_are_judged_at_the_stated_scale(name):
-    for variant in COURSE[name].variants(range(10)):
+@seeds(3, 10)
+def test_lengths_alone_are_judged_at_the_stated_scale(name, seeds):
+    for variant in COURSE[name].variants(seeds):
         polygon = variant.polygons()[0].polygon
         scale = polygon.size / 80
         k = next(i for i in ("kv", "ka") if i in variant.part_ids)
@@ -303,9 +308,10 @@ def test_feedback_names_the_vector_and_gives_no_value():
 
 
 @every_polygon
-def test_a_scale_that_makes_any_drawing_small_explains_no_number(name):
+@seeds(3, 10)
+def test_a_scale_that_makes_any_drawing_small_explains_no_number(name, seeds):
     """At such a scale a millimetre is worth more than any value."""
-    for variant in COURSE[name].variants(range(10)):
+    for variant in COURSE[name].variants(seeds):
         reads = [p.id for p in variant.parts if p.judge and p.kind == "number" and p.unit != "mm"]
         scale = next(i for i in reads if i in ("kv", "ka"))
         marking = variant.grade({**dict.fromkeys(reads, "7.7e7"), scale: "1e6"})

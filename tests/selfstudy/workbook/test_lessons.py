@@ -41,6 +41,7 @@ def printed_by(course, name, lang):
     return [o for cell in book.cells for o in cell.get("outputs", ()) if o.output_type == "stream"]
 
 
+@pytest.mark.e2e
 @pytest.mark.parametrize("name", sampled(LESSONS, ["accuracy"]))
 def test_a_lesson_runs_from_top_to_bottom(course, name):
     """In English; in each language they run below, without a notebook's kernel."""

@@ -355,9 +355,9 @@ def turned(axis, angle):
 
 
 def posed(rng, joints):
-    """The same row after each joint was moved, its own slide before its own turn or after it."""
+    """The same row of made joints after each was moved, its own slide before its own turn or after it."""
     turn, shift, found = np.eye(3), np.zeros(3), []
-    for one in map(joint_of, joints):
+    for one in joints:
         frame = [turn @ np.asarray(u) for u in one.frame]
         point = turn @ np.asarray(one.point or O) + shift
         letters = "uvw"
@@ -416,16 +416,17 @@ LOSING_ROWS = [
 @each_row("joints", FREE_ROWS)
 def test_six_freedoms_at_every_pose_are_no_joint(joints):
     assert in_series(joints).equivalent.name == "free"
-    rng = np.random.default_rng(1)
-    assert min(least_of_six(posed(rng, joints)) for _ in range(500)) > 0.01
+    rng, made = np.random.default_rng(1), [*map(joint_of, joints)]
+    assert min(least_of_six(posed(rng, made)) for _ in range(500)) > 0.01
 
 
 @each_row("joints", LOSING_ROWS)
 def test_six_freedoms_at_one_pose_alone_are_no_joint_of_the_table(joints):
     found = in_series(joints)
     assert (found.m_useful, found.equivalent.name) == (6, "other")
-    rng = np.random.default_rng(1)
-    poses = [least_of_six(posed(rng, joints)) for _ in range(1500)]
+    rng, made, poses = np.random.default_rng(1), [*map(joint_of, joints)], []
+    while len(poses) < 1500 and not (poses and min(poses) < 0.04 * np.median(poses)):
+        poses += [least_of_six(posed(rng, made)) for _ in range(100)]
     assert min(poses) < 0.04 * np.median(poses)
 
 
