@@ -23,6 +23,7 @@ FIELD = (
 _GRAPHS = ("graph", "unnamed_graph")
 _GRAPH_MM = (100, 70)  #: of the surface of a joint graph, whose lengths mean nothing
 _INSET = 90.0  #: size of the small figure of the links, px
+_BELOW = str.maketrans("0123456789", "₀₁₂₃₄₅₆₇₈₉")
 _NAMED = (pin, ground_pivot, point, contact, slider)  #: elements whose label names a point
 
 
@@ -35,10 +36,21 @@ class DirectionOfLink:
     start: complex  #: px of the small figure, y downwards
     end: complex
 
+    @property
+    def label(self) -> str:
+        """Name in plain letters, ``O₄A``."""
+        runs = read(self.name).runs
+        return "".join(run.text.translate(_BELOW) if run.rise < 0 else run.text for run in runs)
+
+    @property
+    def middle(self) -> complex:
+        """Place of the label in the small figure, px."""
+        return (self.start + self.end) / 2
+
 
 @dataclass(frozen=True)
 class DrawingSurface:
-    """What the template of a surface places."""
+    """Content of a drawing surface, for its template."""
 
     kind: str  #: ``paper`` or ``graph``
     size_mm: tuple[int, int]
@@ -77,8 +89,8 @@ class DrawingSurface:
 
 def surface(handout: Handout) -> DrawingSurface | None:
     """Return the drawing surface of a sheet: of paper to draw on, else of a joint graph; none without either."""
-    if handout.drawing_mm:
-        return _paper(handout, handout.drawing_mm)
+    if size_mm := handout.drawing_mm or handout.surface_mm:
+        return _paper(handout, size_mm)
     graph = next((question for question in handout.questions if question.kind in _GRAPHS), None)
     if graph is None:
         return None
@@ -94,7 +106,9 @@ def _paper(handout: Handout, size_mm: tuple[int, int]) -> DrawingSurface:
         if question.unit.endswith("/mm")
     )
     units = {"mm", "°", *(unit for _, unit in scales)}
-    links = tuple(_links(handout.figure)) if isinstance(handout.figure, Figure) else ()
+    # Where nothing is printed to draw on, the statement does not give the directions of the links: they may be asked.
+    is_given = handout.drawing_mm is not None and isinstance(handout.figure, Figure)
+    links = tuple(_links(handout.figure)) if is_given else ()
     return DrawingSurface(
         "paper",
         size_mm,
@@ -170,7 +184,7 @@ def _name(start: complex, end: complex, names: Sequence[tuple[complex, str]], *,
 def _extent(links: Sequence[DirectionOfLink]) -> tuple[float, float]:
     low, high, scale = _frame(links)
     size = scale * (high - low)
-    return round(size.real + 24, 1), round(size.imag + 24, 1)
+    return round(size.real + 48, 1), round(size.imag + 24, 1)
 
 
 def _frame(links: Sequence[DirectionOfLink]) -> tuple[complex, complex, float]:

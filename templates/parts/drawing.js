@@ -63,7 +63,7 @@ function crossings() {
 const unit = () => view.w / (svg.clientWidth || 360), tall = () => unit() * (svg.clientHeight || 300);
 function fit() {
   const edge = isGraph ? 2 : 9, share = (svg.clientWidth || 360) / (svg.clientHeight || 300);
-  view = { w: Math.max(wide + edge + 3, (high + edge) * share) };
+  view = { w: Math.max(wide + edge + 3, (high + 14) * share) };
   view = { ...view, x: (wide - edge + 3 - view.w) / 2, y: (high - edge / 2 - tall()) / 2 };
 }
 const centre = () => ({ x: Math.round(view.x + view.w / 2), y: Math.round(view.y + tall() / 2) });
@@ -76,7 +76,7 @@ function at(e) {
   const room = svg.getBoundingClientRect();
   return { x: view.x + (e.x - room.left) * unit(), y: view.y + (room.bottom - e.y) * unit() };
 }
-// What is near: a point, a crossing, a curve. ``but`` is what moves.
+// What is near; ``but`` is what moves.
 function close(c, reach, but) {
   const point = near(c, of("point", "body").filter((one) => one !== but), reach), cross = !but && near(c, crossings(), reach);
   if (point) return { ...xy(point), point, how: "point" };

@@ -140,7 +140,7 @@ class Worksheet:
 
     @cached_property
     def draws(self) -> bool:
-        """Whether the sheet has a drawing surface."""
+        """True if the sheet has a drawing surface."""
         return surface(handout(self.variant)) is not None
 
     @property
