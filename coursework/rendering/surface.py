@@ -107,8 +107,8 @@ def _paper(handout: Handout, size_mm: tuple[int, int]) -> DrawingSurface:
     )
     units = {"mm", "°", *(unit for _, unit in scales)}
     # Where nothing is printed to draw on, the statement does not give the directions of the links: they may be asked.
-    is_given = handout.drawing_mm is not None and isinstance(handout.figure, Figure)
-    links = tuple(_links(handout.figure)) if is_given else ()
+    figure = handout.figure if handout.drawing_mm else None
+    links = tuple(_links(figure)) if isinstance(figure, Figure) else ()
     return DrawingSurface(
         "paper",
         size_mm,

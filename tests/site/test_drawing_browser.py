@@ -5,15 +5,19 @@ import json
 import math
 import re
 from collections import defaultdict
+from dataclasses import replace
 
 import pytest
+from site_assignments import ASSIGNMENT, dealt
 from site_browser import WIDTHS, chromium, context_of, low, serious, served, told, too_wide, watched
 from site_people import ZOE, Class
 from site_practising import right_answer
 
 import coursework
 from coursework.figures.student_drawing import StudentDrawing
+from coursework.issuing.assignment import AskedExercise
 from coursework.marking.marking import mark
+from coursework.rendering import html
 from coursework.rendering.surface import surface
 from coursework.sheets.handout import handout
 
@@ -373,3 +377,68 @@ def test_the_surface_is_read_aloud_and_hit_by_a_thumb(pencil, exercise):
         assert too_wide(hand.page) == 0
         hand.page.set_viewport_size(dict(zip(("width", "height"), WIDTHS[size], strict=True)))
         hand.close()
+
+
+def test_a_paper_has_a_surface_for_each_exercise_that_is_drawn(desk):
+    class_, address, browser = desk
+    exercises = tuple(map(AskedExercise, ("velocity_polygon", "grashof", "joint_graph")))
+    number = dealt(class_, assignment=replace(ASSIGNMENT, name="drawn", exercises=exercises))
+    context = context_of(browser, class_, address, ZOE)
+    page = context.new_page()
+    faults = watched(page)
+    for _ in range(2):
+        page.goto(f"{address}/assignments/{number}")
+        page.wait_for_selector("[data-surface=graph]")
+    page.fill("[name=e1-a]", "(20; 30)")
+    page.fill("[name=e3-graph]", "1-2 R; 2-3 contact, 3-4-1 pivot")
+    kinds = [json.loads(page.input_value(f"[name=e{k}-drawing]"))["items"] for k in (1, 3)]
+    assert [one["k"] for one in kinds[0]] == ["point"]
+    assert [one["k"] for one in kinds[1]] == ["body"] * 4 + ["joint"] * 3
+    assert [one.get("t") for one in kinds[1]][4:] == ["revolute", "higher", "revolute"]
+    assert page.input_value("[name=e3-graph]") == "1-2 R; 2-3 contact, 3-4-1 pivot"  # what is typed stays
+    told(page, "is kept|Saved")
+    page.reload()
+    assert len(json.loads(page.input_value("[name=e3-drawing]"))["items"]) == 7
+    assert faults == []
+    context.close()
+
+
+def test_a_page_that_is_handed_out_draws_alone(desk, tmp_path):
+    _, _, browser = desk
+    course = coursework.open_course()
+    sheet = handout(course["velocity_polygon"].variant(3, "fr"), "Zoé Martin")
+    (tmp_path / "page.html").write_text(html.page(course.folder.template_folders, sheet), "utf-8")
+    context = browser.new_context(viewport={"width": 390, "height": 844})
+    page = context.new_page()
+    faults = watched(page)
+    page.goto(f"file://{tmp_path}/page.html")
+    page.fill("[name=p]", "(80 ; 45,5)")
+    page.reload()
+    assert StudentDrawing.parse(page.input_value("[name=drawing]")).points == {"p": 80 + 45.5j}
+    page.on("dialog", lambda dialog: dialog.accept())
+    page.click("#wipe")
+    assert page.locator(".surface .dot").count() == 0
+    assert faults == []
+    context.close()
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        '{"v": 1, "items": [{"k": "vector", "id": 1, "from": 7, "to": 8}]}',
+        '{"v": 1, "items": [{"k": "__proto__", "id": 1}, {"k": "point", "id": 2, "n": "__proto__"}]}',
+        '{"v": 1, "items": 7}',
+        "[[[[",
+        '{"v": 1, "items": [null, {"k": "body", "id": 1, "x": "<b>", "y": {}, "n": "<img src=x onerror=alert(1)>"}]}',
+    ],
+)
+def test_what_is_no_drawing_stops_no_page(pencil, text):
+    hand = pencil("velocity_polygon")
+    hand.page.evaluate(
+        "text => { const box = document.querySelector('[name=a-drawing]'); box.value = text; document.dispatchEvent(new Event('answers:filled')); }",
+        text,
+    )
+    hand.dot(30 + 20j, "p")
+    assert hand.page.locator("img[src=x]").count() == 0
+    assert hand.page.input_value("[name=a-p]") == "(30 ; 20)"
+    hand.close()
