@@ -58,7 +58,12 @@ def environment_of(folders: tuple[Path, ...], lang: str) -> Environment:
         "svg_image": svg_image,
     }
     env = environment(folders, lang, markup.html_text, filters)
-    env.globals.update(script=partial(_script, env), digest=partial(script_digest, env), surface=surface)
+    env.globals.update(
+        script=partial(_script, env),
+        digest=partial(script_digest, env),
+        surface=surface,
+        own_drawings=feedback.own_drawings,
+    )
     return env
 
 
