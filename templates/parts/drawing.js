@@ -89,7 +89,7 @@ function snap(c, but) {
   if (!snaps) return { x: tidy(c.x, 2), y: tidy(c.y, 2) };
   const it = close(c, reach, but), d = start && it && it.how === "on" && !it.on.r && far(foot(it.on, start), start) < 0.01 && far(start, it);
   if (!it) return { x: tidy(Math.round(c.x / step) * step), y: tidy(Math.round(c.y / step) * step) };
-  return d ? { ...it, ...along(start, it, Math.round(2 * d / step) * step / 2 / d) } : it;  // round lengths along a line
+  return d ? { ...it, ...along(start, it, Math.round(2 * d / step) * step / 2 / d) } : it;
 }
 function hit(c) {
   const it = close(c, isGraph ? 6 : 22 * unit()), joint = isGraph && !it && near(c, of("joint").map((one) => ({ ...middle(one), one })), 7);
@@ -183,7 +183,7 @@ const dot = (c) => (c.point && find(c.point.id)) || near(c, of("point"), 0.005) 
 const where = (c) => `x ${print(c.x)}  y ${print(c.y)}`, angle = () => way + (tool === "perpendicular" ? 90 : 0);
 function size({ length, a }) {
   const long = length === undefined ? "" : `${print(length)} mm`, real = long && scale() ? ` = ${print(length * scale())} ${scaled().unit}` : "";
-  return `${long}${real}${a === undefined ? "" : `  ∠ ${print(half(a), 1)}°`}`.trim();
+  return `${long}${real}${a === undefined ? "" : `  ∠ ${print(half(a), 1)}°`}`.trim().replace("-", "−");
 }
 function called(one) {
   if (one.k === "joint") return `${one.of.map((id) => find(id).n).join("–")} ${kind(one.t)}`.trim();
@@ -394,7 +394,7 @@ const shapes = {
   vector(one, kind_, runs, s) { const it = curve(one); return [...head(it, it.q, kind_), write(runs, beyond(along(it, it.q, 0.5), it.a + 90, 10 * s), 15 * s)]; },
   point: (one, kind_, runs, s) => [ring(one, 4 * s, `${kind_} dot`), write(runs, { x: one.x + 7 * s, y: one.y + 7 * s }, 16 * s)],
   body: (one, kind_) => [ring(one, 5, `${kind_} vertex`), write([[one.n]], { x: one.x, y: one.y - 1.7 }, 5, "mid")],
-  joint(one, kind_) { const c = middle(one); return [...one.of.map((id) => line(c, find(id), kind_)), write([[kind(one.t)]], { x: c.x, y: c.y + 1 }, 4, "mid")]; },
+  joint(one, kind_) { const c = middle(one); return [...one.of.map((id) => line(c, find(id), kind_)), write([[kind(one.t).slice(0, 3)]], { x: c.x, y: c.y + 1 }, 4, "mid")]; },
 };
 function render() {
   if (!svg.clientWidth) return;
