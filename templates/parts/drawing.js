@@ -133,8 +133,8 @@ function load() {
   show();
 }
 
-// --- boxes
-const box = (name) => document.querySelector(`[name="${data.own + name}"]`), cells = (name) => ["-1", "-2"].map((k) => box(name + k)).filter(Boolean);
+// --- boxes: of components, the line that they make
+const box = (name) => document.querySelector(`[name="${data.own + name}"]`);
 function send(to, value) {
   if (!to || to.value === value) return;
   to.value = value;
@@ -148,7 +148,7 @@ function value(one) {
   return (p ? [q.x - p.x, q.y - p.y] : [one.x, one.y]).map((part) => tidy(part, 2));
 }
 function read(name) {
-  const whole = box(name), all = numbers(whole && whole.value ? whole.value : cells(name).map((one) => one.value).join(" ; "));
+  const all = numbers(box(name).value);
   return all.length === 2 && all.every((one) => Math.abs(one) < FAR) ? all : null;
 }
 function fill() {
@@ -160,7 +160,7 @@ function fill() {
   for (const n of names) {
     const one = named(n), texts = one ? value(one).map((part) => print(part)) : [];
     if (String(read(n) || "") === String(one ? value(one) : "")) continue;
-    if (cells(n).length) cells(n).forEach((cell, k) => send(cell, texts[k] || "")); else send(box(n), one ? `(${texts.join(" ; ")})` : "");
+    send(box(n), one ? `(${texts.join(" ; ")})` : "");
   }
 }
 // What is typed is drawn: of an arrow its tip, from where it starts.
