@@ -299,6 +299,8 @@ on(svg, "keydown", (e) => {
   else if (e.key === "." && stops.length) look(stops[(stops.findIndex((one) => far(one, c) < 1e-3) + 1) % stops.length]);
   else if (e.key === "Enter" || e.key === " ") { const here = (snaps && close(c, 0.02)) || c; press(here); release[tool](here, true); }
   else if (e.key === "Escape") choose(tool);
+  else if (e.key === "Delete") remove(find(picked));
+  else if (e.key === "+" || e.key === "-") zoom(e.key === "+" ? 1.6 : 1 / 1.6);
   else if (e.ctrlKey && "zy".includes(e.key)) acts[e.key === "z" ? "undo" : "redo"]();
   else return;
   e.preventDefault();

@@ -261,6 +261,48 @@ def test_a_velocity_polygon_is_constructed_from_the_statement_alone(pencil):
     hand.close()
 
 
+def test_a_coupler_curve_is_traced_by_stepping_the_crank(pencil):
+    """With compass and lines at true size: the coupler's direction at the instant shown, and P at other angles of the crank."""
+    hand = pencil("coupler_curve", "desk")
+    given = hand.variant.given
+    O, side = 200 + 150j, 1 if given["mode"] == "open" else -1
+    C = O + given["r1"]
+    hand.press("[data-act=snap]")
+    for z in (O, C):
+        hand.tool("point")
+        hand.tap(z)
+    hand.press("[data-act=snap]")
+    curve = []
+    for step in (0, 40):
+        crank = cmath.rect(given["r2"], math.radians(given["theta2"] + step))
+        A, BC = O + crank, abs(C - O - crank)
+        corner = math.acos((BC**2 + given["r3"] ** 2 - given["r4"] ** 2) / (2 * BC * given["r3"]))
+        AB = cmath.rect(given["r3"], cmath.phase(C - A) + side * corner)
+        hand.line("parallel", O, degrees=given["theta2"] + step)
+        for centre, radius in ((O, given["r2"]), (A, given["r3"]), (C, given["r4"])):
+            hand.tool("compass")
+            hand.enter("radius", f"{radius:g}")
+            hand.tap(centre)
+            if centre == O:
+                hand.tool("intersection")
+                hand.tap(A)
+        hand.tool("intersection")
+        hand.tap(A + AB)
+        if not step:
+            hand.measure(A, A + AB, "theta3")
+        hand.line("parallel", A, degrees=math.degrees(cmath.phase(AB)) + given["beta"])
+        curve.append(A + AB / given["r3"] * cmath.rect(given["AP"], math.radians(given["beta"])))
+        hand.tool("compass")
+        hand.enter("radius", f"{given['AP']:g}")
+        hand.tap(A)
+        hand.tool("intersection")
+        hand.tap(curve[-1])
+    drawn = [item.at for item in StudentDrawing.parse(hand.text()).items.values() if item.kind == "point"]
+    assert [min(abs(z - P) for z in drawn) < 0.5 for P in curve] == [True, True]
+    assert hand.marks()["theta3"].verdict == "correct"
+    hand.close()
+
+
 @pytest.mark.parametrize(
     ("exercise", "point", "wrong", "mistake"),
     [
@@ -358,6 +400,9 @@ def test_all_is_done_by_keys(pencil):
     assert f"x {start['x'] + 12:g}" in page.inner_text(".surface-told").replace(",", ".")
     page.keyboard.press("Enter")
     assert [one["k"] for one in json.loads(hand.text())["items"]] == ["point", "point", "vector"]
+    page.keyboard.press("Delete")
+    assert [one["k"] for one in json.loads(hand.text())["items"]] == ["point"]
+    page.keyboard.press("Control+z")
     page.keyboard.press("Control+z")
     assert [one["k"] for one in json.loads(hand.text())["items"]] == ["point"]
     hand.close()
