@@ -29,6 +29,10 @@ def own_drawing(polygon: Polygon, points: Mapping[str, complex], scale: float | 
         Drawn points by the polygon's names, mm on paper.
     scale
         As the student states it, mm/s or mm/s^2 for a mm; None if it cannot be read.
+
+    Returns
+    -------
+    SVG of true size, smaller where that is wider than a page; an empty text for no drawing.
     """
     if polygon.pole not in points or len(points) < 2:
         return ""
