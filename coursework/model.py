@@ -637,6 +637,8 @@ class Exercise:
     drawing_mm
         Width and height of the box of millimetre paper that a printed sheet offers to draw in, whole
         centimetres; none unless told.
+    surface_mm
+        Width and height of the paper of the drawing surface on pages, where no printed box has these sizes.
     """
 
     given: Mapping[str, GivenSpec]
@@ -651,6 +653,7 @@ class Exercise:
     driver: Driver | None = None
     effects: tuple[str, ...] = ()
     drawing_mm: tuple[int, int] | None = None
+    surface_mm: tuple[int, int] | None = None
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "parts", tuple(self.parts))

@@ -19,6 +19,7 @@ from coursework.markup.markdown import INDEX, anchor
 from coursework.rendering import html, pdf, views
 from coursework.rendering.environment import render
 from coursework.rendering.keeping import keeping
+from coursework.rendering.surface import surface
 from coursework.sheets.book import BlanksPiece, Book, BookExercise, LessonText, Piece
 
 _TALL = 78  #: mm that a drawing of a lesson takes at most
@@ -169,6 +170,7 @@ def _page(env: Environment, book: Book, page: BookPage, names: Mapping[str, Any]
     if isinstance(page.of, BookExercise):
         sheet = page.of.handout
         more = views.context(sheet) | {"one": page.of, "keeping": keeping([sheet], sheet.student, sheet.lang)}
+        more["draws"] = surface(sheet) is not None
         return render(env, "book/exercise.html.j2", {**names, **more})
     return render(env, "book/contents.html.j2", names)
 

@@ -1,4 +1,4 @@
-"""Sheets as one self-contained HTML page: nothing fetched; one script in a handout, which keeps its answers, none elsewhere."""
+"""Sheets as one self-contained HTML page: nothing fetched; in a handout a script that keeps its answers and one to draw with, none elsewhere."""
 
 from __future__ import annotations
 
@@ -21,6 +21,7 @@ from coursework.markup.mathml import to_mathml
 from coursework.rendering import feedback, views
 from coursework.rendering.environment import environment, render
 from coursework.rendering.keeping import keeping
+from coursework.rendering.surface import surface
 from coursework.sheets.sheet import FeedbackSheet
 
 
@@ -34,7 +35,10 @@ def page(folders: Sequence[Path], sheet: views.Sheet, paper: str = "a4") -> str:
         else views.context(sheet)
     )
     if sheet is handout:
-        names["keeping"] = keeping([handout], handout.student, handout.lang)
+        names |= {
+            "keeping": keeping([handout], handout.student, handout.lang),
+            "draws": surface(handout) is not None,
+        }
     return render(env, views.TEMPLATES[type(sheet)] + ".html.j2", names | {"paper": paper})
 
 
@@ -54,7 +58,12 @@ def environment_of(folders: tuple[Path, ...], lang: str) -> Environment:
         "svg_image": svg_image,
     }
     env = environment(folders, lang, markup.html_text, filters)
-    env.globals.update(script=partial(_script, env), digest=partial(script_digest, env))
+    env.globals.update(
+        script=partial(_script, env),
+        digest=partial(script_digest, env),
+        surface=surface,
+        own_drawings=feedback.own_drawings,
+    )
     return env
 
 

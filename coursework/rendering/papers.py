@@ -11,6 +11,7 @@ from html import escape
 from pathlib import Path
 from typing import Any, TypeAlias
 
+from jinja2 import Environment
 from markupsafe import Markup
 
 from coursework.errors import BadCourse, BadInput
@@ -20,6 +21,7 @@ from coursework.language.words import words
 from coursework.rendering import answer_pages, feedback, html, latex, pdf, views
 from coursework.rendering.environment import render
 from coursework.rendering.keeping import keeping
+from coursework.rendering.surface import surface
 from coursework.sheets.paper import FeedbackPaper, Logo, Paper, SolutionPaper
 from coursework.sheets.sheet import AnswerSheet, FeedbackSheet, Handout
 
@@ -201,13 +203,26 @@ def _text(data: bytes) -> str:
 
 
 def page(folders: Sequence[Path], paper: AnyPaper, size: str = "a4") -> str:
-    """Return a paper as one web page that fetches nothing; that of a student to fill in runs the one script that keeps answers."""
+    """Return a paper as one web page that fetches nothing; that of a student to fill in runs a script that keeps answers, and one
+    to draw with where there is something to draw."""
     heading = paper.heading
     env = html.environment_of(tuple(folders), heading.lang)
-    names = context(paper, "html.j2", partial(render, env))
     if isinstance(paper, Paper):
+        names = drawing_context(paper, env)
         names["keeping"] = keeping(paper.handouts, heading.student, heading.lang, numbered=True)
+    else:
+        names = context(paper, "html.j2", partial(render, env))
     return render(env, f"{TEMPLATES[type(paper)]}.html.j2", names | {"paper": size, "image": image})
+
+
+def drawing_context(paper: Paper, env: Environment) -> dict[str, Any]:
+    """Return the names for the template of a page with drawing surfaces, whose script the page brings."""
+    draws = any(surface(handout) for handout in paper.handouts)
+
+    def write(template: str, names: Names) -> str:
+        return render(env, template, {**names, "draws": draws})
+
+    return context(paper, "html.j2", write) | {"draws": draws}
 
 
 def image(logo: Logo) -> Markup:

@@ -58,6 +58,7 @@ def _unnamed(variant: Variant) -> Handout:
         ),
         record=variant.record,
         drawing_mm=exercise.spec.drawing_mm,
+        surface_mm=exercise.spec.surface_mm,
     )
 
 

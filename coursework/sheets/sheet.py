@@ -79,6 +79,9 @@ class Handout:
     record: Mapping[str, object]  #: the variant's JSON record
     more_figures: tuple[tuple[Figure | Picture, str], ...] = ()  #: besides the first, each with what it shows
     drawing_mm: tuple[int, int] | None = None  #: width and height of the box to draw in, where there is one
+    surface_mm: tuple[int, int] | None = (
+        None  #: the same of the drawing surface of a page, where nothing is printed
+    )
     answer_pages: tuple[
         AnswerPage, ...
     ] = ()  #: behind the statement, or the paper that it is of, where it is answered there

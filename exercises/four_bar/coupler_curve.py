@@ -165,4 +165,5 @@ EXERCISE = Exercise(
         "curve": r"\mathrm{curve}",
     },
     driver=Driver("theta2", "omega2", output="omega3"),
+    surface_mm=(500, 400),
 )

@@ -25,6 +25,7 @@
       if (isTicked(box)) box.checked = Array.isArray(value) && value.includes(box.value);
       else box.value = typeof value === "string" ? value : "";
     }
+    document.dispatchEvent(new Event("answers:filled"));
   }
 
   function keep() {

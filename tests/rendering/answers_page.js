@@ -22,6 +22,7 @@ globalThis.document = {
   querySelectorAll: () => boxes,
   querySelector: () => main,
   body: { append() {} },
+  dispatchEvent: () => true,
   createElement: () => ({ click() { done.files.push([this.download, this.href]); }, remove() {} }),
 };
 globalThis.confirm = (text) => { done.asked.push(text); return true; };

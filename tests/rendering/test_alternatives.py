@@ -39,7 +39,7 @@ class Images(HTMLParser):
         attrs = dict(attrs)
         if tag == "img":
             self.told.append(attrs.get("alt"))
-        elif tag == "svg":
+        elif tag == "svg" and attrs.get("role") == "img":  # other ones are icons, or are drawn on
             self.told.append(attrs.get("aria-label"))
 
 

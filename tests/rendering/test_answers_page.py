@@ -38,14 +38,14 @@ class Page(HTMLParser):
             r'<script type="application/json" id="sheet-data">(.*?)</script>', text, re.DOTALL
         )
         self.data = json.loads(data)
-        (self.script,) = runs(text)
+        self.script, *_ = runs(text)  # the other one draws
 
     def handle_starttag(self, tag, pairs):
         attributes = dict(pairs)
         if tag == "label":
             self._inside += 1
             self.labelled.add(attributes.get("for"))
-        if tag in ("input", "textarea") and "name" in attributes:
+        if tag in ("input", "textarea") and "name" in attributes and "hidden" not in attributes:
             self.boxes.append(
                 {"type": "text", "value": "", **attributes}
                 if tag == "input"

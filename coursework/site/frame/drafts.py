@@ -10,9 +10,11 @@ from starlette.responses import JSONResponse, Response
 
 from coursework.database.drafts import BLANK, DraftBox, DraftChange, drafts, save
 from coursework.database.people import lock_person
+from coursework.figures.student_drawing import MOST_CHARACTERS
 from coursework.site.frame.requests import FormData, HTTPException, Request
 
 LONGEST = 4000  #: characters of one answer
+DRAWING = "drawing"  #: box of the drawing of a sheet; of a paper, behind the prefix of the exercise
 _TEXT, _OVER = "text.", "over."
 
 
@@ -44,7 +46,9 @@ def save_drafts(
         "versions": {name: now[name].version if name in now else 0 for name in mine},
         "others": {name: box._asdict() for name, box in others.items()},
     }
-    reads = {"read": {name: read(name, sent[name].text) for name in mine}} if read else {}
+    reads = (
+        {"read": {name: read(name, sent[name].text) for name in mine if not is_drawing(name)}} if read else {}
+    )
     return JSONResponse({**answer, **reads})
 
 
@@ -86,10 +90,20 @@ def sent_boxes(form: FormData, boxes: Collection[str]) -> dict[str, DraftChange]
             text, over = form.text(field), form.text(_OVER + name, "0")
             if name not in boxes or not over.isdecimal() or len(over) > 9:
                 raise HTTPException("bad_request", 400)
-            if len(text) > LONGEST:
-                raise HTTPException("too_large", 413, f"{LONGEST}")
+            if len(text) > longest(name):
+                raise HTTPException("too_large", 413, f"{longest(name)}")
             sent[name] = DraftChange(text, int(over))
     return sent
+
+
+def is_drawing(box: str) -> bool:
+    """Return whether a box contains a drawing."""
+    return box.rpartition("-")[2] == DRAWING
+
+
+def longest(box: str) -> int:
+    """Return the number of characters that a box may contain."""
+    return MOST_CHARACTERS if is_drawing(box) else LONGEST
 
 
 def versions_of(text: str) -> dict[str, int]:

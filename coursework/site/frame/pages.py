@@ -26,6 +26,8 @@ _OF_SHEETS = {
     "motion.css": "motion/_style.html.j2",
     "paper.css": "parts/paper_style.html.j2",
     "motion.js": "motion/motion.js",
+    "drawing.css": "parts/surface.css.j2",
+    "drawing.js": "parts/drawing.js",
 }
 
 

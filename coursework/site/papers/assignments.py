@@ -91,7 +91,8 @@ def _paper_response(
         prepared = prepared_pieces(connection, number, person_id, paper.lang, paper.state)
     pieces = prepared or make_pieces(request.site, number, person_id, paper, stores=state.phase.takes)
     form = draft_attributes(request, f"{state.address}/keep", sheet, contents)
-    texts = {name: box.text for name, box in contents.items() if name in paper.fields}
+    boxes_shown = {*paper.fields, *paper.drawings}
+    texts = {name: box.text for name, box in contents.items() if name in boxes_shown}
     return request.render(
         "site/student/assignment", status, state=state, form=form, versions=form["data-keep-versions"], problem=problem,
         look="", back="", zone=zone_name(request.received_at), paper_head=Markup(pieces.head),
@@ -104,7 +105,11 @@ def save_draft(request: Request) -> Response:
     state, paper = state_and_paper(request)
     sheet = sheet_of(state.assignment, paper)
     return save_drafts(
-        request, sheet, paper.fields, lambda name, text: paper.read(name, text).message, state.may_hand_in
+        request,
+        sheet,
+        {*paper.fields, *paper.drawings},
+        lambda name, text: paper.read(name, text).message,
+        state.may_hand_in,
     )
 
 
@@ -113,7 +118,7 @@ def _read_back(request: Request, state: AssignmentState, paper: StudentPaper) ->
     messages = request.words["assignments"]
     if not state.may_hand_in:
         return _too_late(request, state)
-    boxes = _save_form(request, state, paper, texts)
+    boxes = _save_form(request, state, paper, texts | paper.drawing_texts(request.form))
     if not any(text.strip() for text in texts.values()):
         return _paper_response(request, state, paper, boxes, messages["nothing_typed"], 422)
     return _confirming(request, state, paper, texts, ON_THE_PAGE)

@@ -28,7 +28,7 @@ from coursework.rendering.environment import render
 from coursework.rendering.html import environment_of
 from coursework.selfstudy.attempt import read_back as readings
 from coursework.sheets.paper import FeedbackPaper, Paper, PaperHeading
-from coursework.site.frame.drafts import LONGEST
+from coursework.site.frame.drafts import DRAWING, LONGEST, longest
 from coursework.site.frame.lru_cache import LRUCache
 from coursework.site.frame.requests import FormData, HTTPException
 
@@ -142,6 +142,11 @@ class StudentPaper:
         return fields
 
     @cached_property
+    def drawings(self) -> frozenset[str]:
+        """Names of the boxes of drawings, one of each exercise."""
+        return frozenset(f"e{index}-{DRAWING}" for index in range(1, len(self.seeds) + 1))
+
+    @cached_property
     def boxes(self) -> dict[str, PaperBox]:
         """Boxes of the page by name, in order."""
         return {box.name: box for box in self._boxes()}
@@ -176,12 +181,17 @@ class StudentPaper:
         HTTPException
             A field is not a box of the paper, or its text is too long.
         """
-        if strange := [name for name in form.texts if name not in self.fields and not name.startswith("_")]:
+        names = {*self.fields, *self.drawings}
+        if strange := [name for name in form.texts if name not in names and not name.startswith("_")]:
             raise HTTPException("bad_request", 400, len(strange))
         answers = {name: ", ".join(form.texts.get(name, ())) for name in self.fields}
         if any(len(text) > LONGEST for text in answers.values()):
             raise HTTPException("too_large", 413, LONGEST)
         return answers
+
+    def drawing_texts(self, form: FormData) -> dict[str, str]:
+        """Return the drawings in a form of the page, by box; a longer text than a drawing may have is cut, and then is none."""
+        return {name: form.text(name)[: longest(name)] for name in self.drawings if name in form.texts}
 
     def pieces(self) -> PreparedPieces:
         """Return the parts of its page, with empty boxes."""
@@ -196,8 +206,12 @@ class StudentPaper:
     def template_names(self, document: Paper | FeedbackPaper) -> dict[str, Any]:
         """Return the names for the template of a paper, or of its feedback."""
         env = environment_of(self.course.folder.template_folders, self.lang)
+        if isinstance(document, Paper):
+            names = papers.drawing_context(document, env)
+        else:
+            names = papers.context(document, "html.j2", partial(render, env))
         return {
-            **papers.context(document, "html.j2", partial(render, env)),
+            **names,
             "image": papers.image,
             "keeping": "",
         }

@@ -247,7 +247,7 @@ def _after(request: Request, work: Worksheet, summary: dict[str, Any]) -> dict[s
 def draft(request: Request) -> Response:
     """Store the drafts that a script sends during typing."""
     work = _worksheet(request)
-    return save_drafts(request, work.name, work.parts)
+    return save_drafts(request, work.name, work.boxes)
 
 
 def read(request: Request) -> Response:

@@ -21,6 +21,7 @@ from coursework.marking.answers import read
 from coursework.markup import markdown
 from coursework.rendering import views
 from coursework.rendering.feedback import verdict_word
+from coursework.rendering.surface import surface
 from coursework.selfstudy import hints, predictions
 from coursework.selfstudy.attempt import (
     CheckedAnswers,
@@ -33,7 +34,14 @@ from coursework.selfstudy.attempt import (
 from coursework.selfstudy.progress import HINT, REVEAL, ExerciseStore, is_blank
 from coursework.selfstudy.worked import theory
 from coursework.sheets.handout import handout
-from coursework.site.frame.drafts import LONGEST, draft_attributes, save_form_drafts, versions_of
+from coursework.site.frame.drafts import (
+    DRAWING,
+    LONGEST,
+    draft_attributes,
+    longest,
+    save_form_drafts,
+    versions_of,
+)
 from coursework.site.frame.requests import HTTPException
 from coursework.site.lessons.lesson_content import (
     LessonLink,
@@ -141,6 +149,16 @@ class Worksheet:
     def parts(self) -> Mapping[str, Part]:
         return {part.id: part for part in self.variant.parts}
 
+    @cached_property
+    def draws(self) -> bool:
+        """True if the sheet has a drawing surface."""
+        return surface(handout(self.variant)) is not None
+
+    @property
+    def boxes(self) -> frozenset[str]:
+        """Names of the boxes whose drafts are stored: those of the parts, and the drawing."""
+        return frozenset({*self.parts, DRAWING} if self.draws else self.parts)
+
     def part(self, name: str) -> Part:
         """Return the part with a name.
 
@@ -158,6 +176,14 @@ class Worksheet:
         """Texts of a form, by part; empty for a blank box, and if nothing is ticked."""
         texts = self.request.form.texts
         return {name: ", ".join(texts.get(BOX_PREFIX + name, ()))[:LONGEST] for name in self.parts}
+
+    @property
+    def _form_texts(self) -> dict[str, str]:
+        """Texts of a form by box, with the drawing."""
+        if not self.draws:
+            return self.typed
+        drawing = self.request.form.text(BOX_PREFIX + DRAWING)[: longest(DRAWING)]
+        return {**self.typed, DRAWING: drawing}
 
     def box_contents(self) -> dict[str, str]:
         """Content of each box: the draft, or else the last answer, in the form that the box uses."""
@@ -185,9 +211,13 @@ class Worksheet:
                 with request.site.store.begin() as connection:
                     if not request.is_fragment:  # a script stores the texts by itself
                         self.drafts, others = save_form_drafts(
-                            connection, request, self.name, self.typed, lambda boxes: self._contents(boxes, answers), versions,
+                            connection, request, self.name, self._form_texts, lambda boxes: self._contents(boxes, answers), versions,
                         )  # fmt: skip
-                        self.others = {n: box for n, box in others.items() if box.text != self.typed[n]}
+                        self.others = {
+                            n: box
+                            for n, box in others.items()
+                            if n in self.parts and box.text != self.typed[n]
+                        }
                     self._progress.save(connection)
 
     # -------------------------------------------------------------------- feedback
@@ -372,7 +402,9 @@ class Worksheet:
             "own": BOX_PREFIX,
             "filled": {
                 BOX_PREFIX + n: _ticked(self.variant, self.parts[n], text) for n, text in contents.items()
-            },
+            }
+            | {BOX_PREFIX + n: (box.text,) for n, box in self.drafts.items() if n == DRAWING},
+            "draws": self.draws,
             "before_questions": "site/student/_practice_before.html.j2",
             "below_question": "site/student/_practice_below.html.j2",
             "sheet_page": self,

@@ -1,0 +1,78 @@
+"""A drawing is stored with the draft, and stands on no page but as text: on sheets to practise and on papers."""
+
+import json
+import re
+from dataclasses import replace
+from html import unescape
+
+from site_assignments import ASSIGNMENT, dealt
+from site_people import MAX, ZOE
+from site_practising import Practising
+
+from coursework.database.drafts import drafts
+from coursework.database.submissions import answers_of, submissions_of
+from coursework.figures.student_drawing import MOST_CHARACTERS
+from coursework.issuing.assignment import AskedExercise
+
+DRAWN = replace(ASSIGNMENT, exercises=(AskedExercise("grashof"), AskedExercise("two_circles")))
+TEXT = json.dumps({"v": 1, "items": [{"k": "point", "id": 1, "x": 12.5, "y": 30, "n": "p"}], "scale": None})
+HOSTILE = '</textarea></script><script>alert(1)</script>{"v": 1, "items": "<b onclick=x>"}'
+
+
+def shown(page, name):
+    """What stands in the text area of a drawing."""
+    found = re.search(rf'<textarea hidden name="{name}"[^>]*>(.*?)</textarea>', page, re.DOTALL)
+    return unescape(found[1]).strip()
+
+
+def test_a_drawing_is_stored_and_shown_to_its_author_alone(class_of_three):
+    zoe, max_ = (Practising(class_of_three, class_of_three.browser(n), "two_circles") for n in (ZOE, MAX))
+    reply = zoe.browser.fill(f"{zoe.address}/draft", {"text.drawing": TEXT, "over.drawing": "0"})
+    assert reply.json()["versions"] == {"drawing": 1}
+    assert shown(zoe.page(), "a-drawing") == TEXT
+    assert shown(max_.page(), "a-drawing") == ""
+    page = zoe.send(**{"a-drawing": TEXT.replace("12.5", "13.5")}).text  # a form without a script
+    assert shown(page, "a-drawing") == shown(zoe.page(), "a-drawing") == TEXT.replace("12.5", "13.5")
+
+
+def test_a_drawing_opens_no_element_and_has_its_size(class_of_three):
+    zoe = Practising(class_of_three, class_of_three.browser(ZOE), "joint_graph")
+    store = f"{zoe.address}/draft"
+    assert zoe.browser.fill(store, {"text.drawing": HOSTILE, "over.drawing": "0"}).status_code == 200
+    assert shown(zoe.page(), "a-drawing") == HOSTILE
+    assert "<script>alert" not in zoe.page()
+    long = {"text.drawing": "x" * (MOST_CHARACTERS + 1), "over.drawing": "1"}
+    assert zoe.browser.fill(store, long).status_code == 413
+    assert zoe.browser.fill(store, {"text.graph": "x" * 4001, "over.graph": "0"}).status_code == 413
+    other = Practising(class_of_three, class_of_three.browser(ZOE), "grashof")
+    reply = other.browser.fill(f"{other.address}/draft", {"text.drawing": TEXT, "over.drawing": "0"})
+    assert reply.status_code == 400
+
+
+def test_a_paper_keeps_its_drawings_beside_what_is_handed_in(class_of_three):
+    number = dealt(class_of_three, assignment=DRAWN)
+    browser, address = class_of_three.browser(ZOE), f"/assignments/{number}"
+    page = browser.get(address).text
+    assert "drawing.js" in page
+    assert re.findall(r'<textarea hidden name="([^"]+)"', page) == ["e2-drawing"]
+    texts = {"text.e2-drawing": TEXT, "over.e2-drawing": "0", "text.e2-kl": "1", "over.e2-kl": "0"}
+    told = browser.fill(f"{address}/keep", texts).json()
+    assert told["versions"] == {"e2-drawing": 1, "e2-kl": 1}
+    assert set(told["read"]) == {"e2-kl"}
+    assert shown(browser.get(address).text, "e2-drawing") == TEXT
+    assert (
+        browser.fill(f"{address}/keep", {"text.e9-drawing": TEXT, "over.e9-drawing": "0"}).status_code == 400
+    )
+    read_back = browser.fill(
+        address, {"e2-drawing": HOSTILE, "e2-kl": "2", "_versions": json.dumps({"e2-drawing": 1})}
+    )
+    assert read_back.status_code == 200
+    assert "alert(1)" not in read_back.text
+    assert shown(browser.get(address).text, "e2-drawing") == HOSTILE
+    browser.fill(f"{address}/hand-in", {"_number": "1", "e2-kl": "2"})
+    with class_of_three.site.store.reading() as connection:
+        (delivery,) = submissions_of(connection, number, class_of_three.ids[ZOE])
+        answers = answers_of(connection, delivery.id)
+        kept = drafts(connection, class_of_three.ids[ZOE], f"assignment/{number}")
+    assert not any("drawing" in part or "alert" in text for *_, part, text in answers)
+    assert kept["e2-drawing"].text == HOSTILE
