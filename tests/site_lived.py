@@ -132,7 +132,12 @@ def shown(site: Lived) -> list[Shown]:
         (f"{of_class}/scans/queue", f"/desk/{site.done}/scans/queue"),
         (f"{of_class}/regrade", f"/desk/{site.done}/regrade"),
     )
-    nobody = (("/sign-in", "/sign-in"), ("/invitation/{token}", f"/invitation/{site.token}"))
+    nobody = (
+        ("/offline", "/offline"),
+        ("/accessibility", "/accessibility"),
+        ("/sign-in", "/sign-in"),
+        ("/invitation/{token}", f"/invitation/{site.token}"),
+    )
     return [
         *(Shown(path, STUDENT, address) for path, address in students),
         *(Shown(path, TEACHER, address) for path, address in staff),
@@ -143,7 +148,7 @@ def shown(site: Lived) -> list[Shown]:
 #: What shows no page to who asks for its address: forms that are sent there, files, pieces, ways on.
 NO_PAGES = frozenset(
     (
-        "/", "/language", "/who", "/sign-out", "/account/data", "/static/{name}", "/practice/{exercise}", "/practice/{exercise}/{seed}/draft",
+        "/", "/language", "/who", "/sign-out", "/account/data", "/service-worker.js", "/static/{name}", "/assignments/{number:int}/read-back", "/practice/{exercise}", "/practice/{exercise}/{seed}/draft",
         "/practice/{exercise}/{seed}/read", "/lessons/{lesson}/figures/{figure}", "/progress/progress.json", "/assignments/{number:int}/keep", "/assignments/{number:int}/hand-in",
         "/assignments/{number:int}/file", "/assignments/{number:int}/{file}", "/assignments/{number:int}/receipts/{code}.{ending}", "/desk/issued",
         "/desk/people/add", "/desk/people/add-staff", "/desk/people/{person}/data",

@@ -90,7 +90,7 @@ def pristine():
 
 
 class Browser(Client):
-    """Follows no address by itself; ``fill`` fills in the seal of the page's forms."""
+    """Follows no address by itself; ``fill`` fills in the seal of the page's forms, and sees how answers are read."""
 
     def __init__(self, app, lang):
         super().__init__(app, base_url=HOME, headers={"accept-language": lang})
@@ -107,7 +107,9 @@ class Browser(Client):
         return self._seal[1]
 
     def fill(self, address, data=None, **more):
-        return self.post(address, data={"_seal": self.seal, **(data or {})}, **more)
+        reply = self.post(address, data={"_seal": self.seal, **(data or {})}, **more)
+        where = reply.headers.get("location", "")
+        return self.get(where) if where.endswith("/read-back") else reply
 
 
 class Class:

@@ -12,6 +12,7 @@ POLICY = {
     "img-src": "'self' data:",
     "style-src": "'self' 'unsafe-inline'",
     "script-src": "'self'",
+    "font-src": "'self'",
     "connect-src": "'self'",
     "form-action": "'self'",
     "base-uri": "'none'",

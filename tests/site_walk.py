@@ -190,7 +190,7 @@ def fillings(site: Filled) -> dict[str, Filling]:
         {"number": mine, "code": site.receipts[MAX], "ending": "json"},
     )
     anybodys = (
-        "/", "/language", "/who", "/sign-in", "/sign-out", "/account", "/account/data", "/practice", "/progress",
+        "/", "/service-worker.js", "/offline", "/accessibility", "/language", "/who", "/sign-in", "/sign-out", "/account", "/account/data", "/practice", "/progress",
         "/progress/progress.json", "/assignments", "/desk", "/desk/issued", "/desk/people", "/desk/people/add", "/desk/people/add-staff", "/desk/audit",
         "/desk/receipts", "/desk/lti", "/desk/assignments", "/desk/assignments/new",
     )  # fmt: skip
@@ -220,7 +220,7 @@ def fillings(site: Filled) -> dict[str, Filling]:
         },
         **{
             f"/assignments/{{number:int}}{end}": paper
-            for end in ("", "/keep", "/hand-in", "/file", "/feedback")
+            for end in ("", "/keep", "/read-back", "/hand-in", "/file", "/feedback")
         },
         "/assignments/{number:int}/receipts/{code}": Filling(*code),
         "/assignments/{number:int}/receipts/{code}.{ending}": Filling(*code),

@@ -23,6 +23,9 @@ class Complex(Kind):
         ("unknown_symbol", "two_values", "not_a_number", "mixed_units"), "not_complex"
     )
 
+    def keys(self, part: Stated) -> tuple[str, ...]:
+        return *super().keys(part), "i", "∠", "°"
+
     def read(self, answer: Any, part: Stated, asking: Asking) -> Reading:
         return read_complex(answer, part.unit)
 

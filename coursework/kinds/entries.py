@@ -18,7 +18,7 @@ class Entries(Kind):
     reference, or the envelope where that is wider.
     """
 
-    is_followed = True
+    is_followed = has_cells = True
     of_largest = True
     box = "wide"
 

@@ -30,6 +30,9 @@ class EquationKind(Kind):
         "two_equals_signs": "not_an_equation",
     }
 
+    def keys(self, part: Stated) -> tuple[str, ...]:
+        return *part.variables, "=", "+", "-", "*", "(", ")", "^", "√(", "cos(", "sin("
+
     def read(self, answer: Any, part: Stated, asking: Asking) -> Reading:
         from coursework.parsing.equations import read_equation
 

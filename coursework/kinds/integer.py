@@ -25,6 +25,9 @@ class Integer(Kind):
     family = "integer"
     unitless = "wrong_unit_integer"
 
+    def keys(self, part: Stated) -> tuple[str, ...]:
+        return ("-",)
+
     def read(self, answer: Any, part: Stated, asking: Asking) -> Reading:
         from coursework.parsing.numbers import read_integer
 

@@ -66,6 +66,13 @@ class Tick(NamedTuple):
     printed: str  #: beside the box, Markdown: a letter, a symbol; nothing where the engine has a word for it
 
 
+class ComponentBox(NamedTuple):
+    """A box for one component of an answer."""
+
+    symbol: str  #: LaTeX before it
+    unit: str  #: as a part states it; ``1`` for none
+
+
 class AnswerSpelling(NamedTuple):
     """A right answer in one of the ways that people write it; ways of one name stand on one sheet."""
 
@@ -119,6 +126,7 @@ class Kind(ABC):
         True  #: feedback calls it so too; else by the number of the question
     )
     box: ClassVar[str] = "usual"  #: room for the answer: usual, wide, line, lines, blank, millimetre
+    has_cells: ClassVar[bool] = False  #: on a page, a box for each component stands for the one line
     columns: ClassVar[
         tuple[str, ...]
     ] = ()  #: letters before their units, where a question may ask in another order
@@ -233,6 +241,20 @@ class Kind(ABC):
     def units(self, unit: str) -> tuple[str, ...]:
         """Return the units that an answer to a part of this unit is in: one, or one a column."""
         return (unit,)
+
+    def keys(self, part: Stated) -> tuple[str, ...]:
+        """Return what an answer needs and keyboards of numbers lack, each as a page inserts it; ``,`` for the decimal sign."""
+        if self.is_text or self.is_open:
+            return ()
+        return "-", ",", "(", ")", "^", "√(", "π", *(("°",) if part.unit == "deg" else ())
+
+    def units_asked(self, part: Stated, asking: Asking) -> tuple[int, ...]:
+        """Return the places in :meth:`units` of the columns, in the order in which the question asks for them."""
+        return tuple(range(len(self.units(part.unit))))
+
+    def cells(self, part: Stated, asking: Asking) -> tuple[tuple[ComponentBox, ...], ...]:
+        """Return the boxes for the components in the order of :meth:`coordinates`, in groups that stand together."""
+        return (tuple(ComponentBox(symbol, part.unit) for symbol in self.coordinates(part, asking)),)
 
     def formula(self, value: np.ndarray, number: Callable[[float], str]) -> str:
         """Return a reference that is an array, as a formula without its unit; nothing where its entries say enough."""

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from coursework.kinds.entries import Entries
-from coursework.kinds.kind import AnswerSpelling, Asking, Stated
+from coursework.kinds.kind import AnswerSpelling, Asking, ComponentBox, Stated
 from coursework.language.numbers import significant
 from coursework.parsing.matrices import read_matrix
 from coursework.parsing.reading import Reading
@@ -28,10 +28,15 @@ class Matrix(Entries):
         rows, columns = np.shape(asking.reference(part.quantity))
         return tuple(rf"({row};\ {column})" for row in range(1, rows + 1) for column in range(1, columns + 1))
 
+    def cells(self, part: Stated, asking: Asking) -> tuple[tuple[ComponentBox, ...], ...]:
+        """Return a group for each row."""
+        columns, (cells,) = np.shape(asking.reference(part.quantity))[1], super().cells(part, asking)
+        return tuple(cells[start : start + columns] for start in range(0, len(cells), columns))
+
     def joined(self, texts: Sequence[str], part: Stated, asking: Asking) -> str:
         columns = np.shape(asking.reference(part.quantity))[1]
         rows = (texts[start : start + columns] for start in range(0, len(texts), columns))
-        return "[" + "; ".join(" ".join(row) for row in rows) + "]"
+        return "[" + "; ".join(f"[{' ; '.join(row)}]" for row in rows) + "]"
 
     def written(self, value: Any, digits: int, label: Callable[[str], str]) -> str:
         rows = (" ".join(significant(v, digits) for v in row) for row in np.asarray(value).tolist())

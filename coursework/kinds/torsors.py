@@ -13,7 +13,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from coursework.kinds.kind import AnswerSpelling, Asking, Kind, Stated, Tick
+from coursework.kinds.kind import AnswerSpelling, Asking, ComponentBox, Kind, Stated, Tick
 from coursework.kinds.nearness import in_half_widths, offset
 from coursework.kinds.ticks import share_of_named
 from coursework.language.numbers import significant
@@ -32,7 +32,7 @@ class Torsor(Kind):
     that of the moments is the envelope where that is wider. ``unit`` is that of the moments, ``of_resultant`` goes with it.
     """
 
-    is_followed = of_largest = share_stands = True
+    is_followed = of_largest = share_stands = has_cells = True
     rank = 1
     box = "line"
     family = "torsor"
@@ -48,6 +48,16 @@ class Torsor(Kind):
 
     def units(self, unit: str) -> tuple[str, ...]:
         return self.of_resultant(unit), unit
+
+    def units_asked(self, part: Stated, asking: Asking) -> tuple[int, ...]:
+        names = self._names(len(asking.reference(part.quantity)))
+        return tuple(dict.fromkeys(self._column(name) for name in names))
+
+    def cells(self, part: Stated, asking: Asking) -> tuple[tuple[ComponentBox, ...], ...]:
+        """Return a group for each column; one for a plane torsor."""
+        names, units = self._names(len(asking.reference(part.quantity))), self.units(part.unit)
+        cells = tuple(ComponentBox(_symbol(name), units[self._column(name)]) for name in names)
+        return (cells,) if len(cells) == 3 else (cells[:3], cells[3:])
 
     def read(self, answer: Any, part: Stated, asking: Asking) -> Reading:
         units = (self.of_resultant(part.unit), part.unit)
@@ -169,13 +179,23 @@ class Torsor(Kind):
         """Return the components of an array of 6, or of a plane one of 3."""
         return tuple(self.form.names[index] for index in (self.form.plane if count == 3 else range(6)))
 
+    def _column(self, name: str) -> int:
+        """Return 0 for a component of the resultant, 1 for one of the moment."""
+        return self.form.names.index(name) // 3
+
+    def joined(self, texts: Sequence[str], part: Stated, asking: Asking) -> str:
+        """Components by name: in ``1,5; 2,5; 3,5`` each row might hold two."""
+        return "; ".join(
+            f"{name} = {text}" for name, text in zip(self._names(len(texts)), texts, strict=True)
+        )
+
     def from_paper(self, texts: Sequence[str], part: Stated, asking: Asking, *, unit: bool = False) -> str:
         """Components by name; the ticked unit is that of both columns, and stands behind each of them."""
-        names = self._names(len(texts))
         units = self.units(part.unit) if unit else ("", "")
-        behind = [units[self.form.names.index(name) // 3] for name in names]
-        cells = zip(names, texts, behind, strict=True)
-        return "; ".join(f"{name} = {value} {text}".strip() for name, value, text in cells)
+        names = zip(self._names(len(texts)), texts, strict=True)
+        return self.joined(
+            [f"{text} {units[self._column(name)]}".strip() for name, text in names], part, asking
+        )
 
     # ----------------------------------------------------------------- students
 
@@ -222,6 +242,9 @@ class Pattern(Kind):
 
     def read(self, answer: Any, part: Stated, asking: Asking) -> Reading:
         return read_pattern(answer, self.form)
+
+    def keys(self, part: Stated) -> tuple[str, ...]:
+        return self.form.names
 
     def kept(self, read_as: str) -> Any:
         return self.components(read_as)

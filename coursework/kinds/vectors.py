@@ -21,6 +21,7 @@ class Coordinates(Kind):
     """Coordinates, as many as those of the reference."""
 
     family = "point"
+    has_cells = True
     rank = 1
     faults: ClassVar[Mapping[str, str]] = {
         "unknown_symbol": "not_coordinates",

@@ -166,7 +166,7 @@ def _cells(text: str, form: TorsorForm, *, plane: bool, symbols: bool) -> _Cells
     rows = groups or [row for row in re.split(r"[;\n]", inside) if row.strip(" ,")]
     if len(rows) == 1 and [len(row.split()) for row in re.split(_COMMA_OF_ROWS, inside)] == [2, 2, 2]:
         rows = re.split(_COMMA_OF_ROWS, inside)  # {0 vx, wy 0, 0 vz}
-    cells = _of_rows(rows, plane=plane, symbols=symbols)
+    cells = _of_rows(rows, plane=plane, symbols=symbols, commas=bool(groups) or not plane)
     if cells is None:
         raise Stop("wrong_torsor", text)
     if len(cells) == 3:
@@ -242,12 +242,16 @@ def _columns(text: str) -> list[str] | None:
     return text.split("|") if text.count("|") == 1 else None
 
 
-def _of_rows(rows: Sequence[str], *, plane: bool, symbols: bool) -> list[str] | None:
-    """Return the cells of rows: two of three, three of two, one of six or six of one; three alone in the plane."""
+def _of_rows(rows: Sequence[str], *, plane: bool, symbols: bool, commas: bool) -> list[str] | None:
+    """Return the cells of rows: two of three, three of two, one of six or six of one; three alone in the plane.
+
+    Without ``commas``, a bare one in a row of three is decimal: ``1,5; 2,5; 3,5`` are three numbers.
+    """
     if len(rows) == 1:
         return _entries(rows[0], (6, 3) if plane else (6,), symbols=symbols)
     for wanted in {2: (3,), 3: (2, 1) if plane else (2,), 6: (1,)}.get(len(rows), ()):
-        entries = [_entries(row, (wanted,), symbols=symbols) for row in rows]
+        commas = commas or len(rows) != 3
+        entries = [_entries(row, (wanted,), symbols=symbols, commas=commas) for row in rows]
         if None not in entries:
             readable = [row for row in entries if row is not None]
             return (
@@ -258,20 +262,20 @@ def _of_rows(rows: Sequence[str], *, plane: bool, symbols: bool) -> list[str] | 
     return None
 
 
-def _entries(text: str, counts: Sequence[int], *, symbols: bool) -> list[str] | None:
+def _entries(text: str, counts: Sequence[int], *, symbols: bool, commas: bool = True) -> list[str] | None:
     """Return a row or a column cut into one of the counts of cells, the likeliest cut first."""
     text = text.strip(" \n")
     if (bare := _GROUP.fullmatch(text)) and counts != (1,):
         text = bare[1]
     text = re.sub(r"\s*=\s*", "=", text.strip(" ,;\n"))
-    for pieces in _cuts(text, symbols=symbols):
+    for pieces in _cuts(text, symbols=symbols, commas=commas):
         entries = [piece.strip() for piece in pieces]
         if len(entries) in counts:
             return entries
     return None
 
 
-def _cuts(text: str, *, symbols: bool) -> Iterator[list[str]]:
+def _cuts(text: str, *, symbols: bool, commas: bool) -> Iterator[list[str]]:
     yield [text]
     if "|" in text:
         yield text.split("|")
@@ -283,7 +287,8 @@ def _cuts(text: str, *, symbols: bool) -> Iterator[list[str]]:
         yield _merged(tokens, signs=True)
         tokens = _merged(tokens, signs=False)
     yield tokens
-    yield text.split(",")
+    if commas:
+        yield text.split(",")
 
 
 _GOES_ON = re.compile(r"[^\W\d_]|[°%/*^)\]]")

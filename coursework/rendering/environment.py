@@ -123,9 +123,19 @@ def environment(
         column_share=lambda question: views.column_of(question, lang),
         python_name=views.python_name,
         after_number=after_number,
-        fill=lambda pattern, *parts: pattern.format(*parts),
+        fill=_filled,
     )
     return env
+
+
+def _filled(pattern: str, *parts: object) -> str:
+    """Return a pattern with its parts; as markup where a part is markup, with the others escaped."""
+    is_markup = any(isinstance(part, Markup) for part in parts)
+    return (
+        Markup(pattern).format(*parts)
+        if is_markup and not isinstance(pattern, Markup)
+        else pattern.format(*parts)
+    )
 
 
 def _check_places(folders: Sequence[Path]) -> None:

@@ -67,16 +67,16 @@ def environment_of(folders: tuple[Path, ...], lang: str) -> Environment:
     return env
 
 
-def _script(env: Environment, name: str) -> Markup:
-    """Return a script among the templates, as it stands in a page."""
+def _script(env: Environment, *names: str) -> Markup:
+    """Return scripts among the templates, one behind another, as they stand in a page."""
     if env.loader is None:
-        raise BadCourse(f"no template {name!r}")
-    return Markup("\n" + env.loader.get_source(env, name)[0])
+        raise BadCourse(f"no template {names[0]!r}")
+    return Markup("".join("\n" + env.loader.get_source(env, name)[0] for name in names))
 
 
-def script_digest(env: Environment, name: str) -> str:
+def script_digest(env: Environment, *names: str) -> str:
     """Return the digest of the one script that a page allows: a browser runs no other."""
-    return "sha256-" + base64.b64encode(hashlib.sha256(_script(env, name).encode()).digest()).decode()
+    return "sha256-" + base64.b64encode(hashlib.sha256(_script(env, *names).encode()).digest()).decode()
 
 
 def construction(folders: Sequence[Path], drawn: Construction) -> str:

@@ -6,6 +6,7 @@ It contains no words of its own; notebooks and the site add them.
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterable, Mapping
+from contextlib import suppress
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -20,6 +21,8 @@ from coursework.marking.error_messages import shown_as
 from coursework.marking.feedback import part_name, say_not_read
 from coursework.marking.mark import Mark, SheetMarks, made_mark
 from coursework.marking.marking import mark
+from coursework.parsing.vocabulary import Unreadable
+from coursework.quantities.formula_latex import number_latex
 from coursework.selfstudy import hints, predictions
 from coursework.selfstudy.mastery import marked_answers
 from coursework.selfstudy.predictions import Prediction, PredictionOutcome
@@ -29,6 +32,9 @@ if TYPE_CHECKING:
     from coursework.course.variant import Variant
     from coursework.marking.mark import SheetMarks
     from coursework.model import Part
+    from coursework.parsing.reading import Reading
+
+_DIGITS = 7  #: of a component that was read
 
 
 class CheckedAnswers(NamedTuple):
@@ -296,12 +302,27 @@ def read_back(variant: Variant, part: Part, text: str) -> tuple[bool, tuple[str,
     if reading.status == "missing" or part.sort.is_open:
         return True, ()
     if reading.status == "read":
-        displayed = (shown_as(variant, part, reading, k)[1] for k in range(len(reading.values)))
+        displayed = (
+            _typeset(variant, part, reading, k) or shown_as(variant, part, reading, k)[1]
+            for k in range(len(reading.values))
+        )
         bare = part.sort.is_scalar and part.unit != "1" and not (reading.unit_given or part.asks_unit)
         unit = unit_text(part.unit, variant.lang) if bare else ""
         return True, tuple(dict.fromkeys(_with(unit, item) for item in displayed))
     mark = made_mark(variant, part, reading, reading.status, 0.0, "", say_not_read(variant, part, reading))
     return False, (sentence_of(variant, mark, ""),)
+
+
+def _typeset(variant: Variant, part: Part, reading: Reading, index: int) -> str:
+    """Return what was read as a formula; empty where the text says as much."""
+    value, latex = reading.values[index], ""
+    if isinstance(value, np.ndarray) and value.size > 3:
+        latex = part.sort.formula(value, lambda number: number_latex(number, "1", _DIGITS))
+    elif part.sort.is_text:
+        symbols = {name: variant.exercise.symbol(name) for name in part.variables}
+        with suppress(Unreadable):  # behind words, or before a unit: the text stands as it is
+            latex = part.sort.latex(reading.read_as[index], symbols)
+    return f"${latex}$" if latex else ""
 
 
 def _with(unit: str, text: str) -> str:

@@ -229,7 +229,7 @@ def _block(variant: Answerable, index: int, part: Part, number: str, lang: str, 
     if part.sort.field == "drawing":
         return _drawing(replace(blank, is_millimetre=part.millimetre), part.room, width)
     if part.sort.field == "number":
-        unit = "" if part.asks_unit else units_text(part, lang)
+        unit = "" if part.asks_unit else units_text(part, lang, variant)
         blank = replace(blank, asks_unit=part.asks_unit)
         return _numbers(blank, part.sort.coordinates(part, variant), unit, width, part.sort.has_decimals)
     raise BadCourse(

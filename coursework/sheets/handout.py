@@ -10,7 +10,9 @@ from typing import TYPE_CHECKING
 from coursework.course.answer_keys import answer_keys
 from coursework.language.numbers import localise, plain, unit_text
 from coursework.language.words import words as engine_words
+from coursework.markup.markdown import plain_line
 from coursework.model import Part
+from coursework.sheets.cells import cells_of, form_of
 from coursework.sheets.sheet import GivenValue, Handout, Question
 from coursework.sheets.units import units_text
 
@@ -108,7 +110,7 @@ def _question(variant: Variant, number: int, part: Part, ways: Sequence[str]) ->
         id=part.id,
         symbol=variant.exercise.symbol(part.quantity) if part.sort.has_symbol else "",
         prompt=prompt(variant, part, ways),
-        unit="" if part.asks_unit else units_text(part, variant.lang),
+        unit="" if part.asks_unit else units_text(part, variant.lang, variant),
         kind=part.kind,
         is_exact=part.is_exact,
         is_open=part.sort.is_open,
@@ -123,7 +125,22 @@ def _question(variant: Variant, number: int, part: Part, ways: Sequence[str]) ->
         asks_unit=part.asks_unit,
         judge=part.judge,
         key=answer_keys(variant.parts)[part.id],
+        keys=_keys(variant, part),
+        types_numbers=not (part.sort.is_text or part.sort.is_open or part.choices or part.asks_unit),
+        cells=cells_of(variant, part),
+        cells_form=form_of(variant, part),
     )
+
+
+_SIGNS = {"-": "−", "*": "·", "√(": "√", "cos(": "cos", "sin(": "sin"}  #: as keys show them
+
+
+def _keys(variant: Variant, part: Part) -> tuple[tuple[str, str], ...]:
+    """Return the keys of a part: what each shows, and what it types."""
+    shown = {name: plain_line(f"${variant.exercise.symbol(name)}$", variant.lang) for name in part.variables}
+    decimal = localise("0.5", variant.lang)[1]
+    typed = (decimal if key == "," else key for key in part.sort.keys(part))
+    return tuple((shown.get(key) or _SIGNS.get(key, key), key) for key in typed)
 
 
 def tolerance_words(part: Part, lang: str) -> str:

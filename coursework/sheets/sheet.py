@@ -17,6 +17,7 @@ from coursework.course.lessons import Lesson as Lesson
 if TYPE_CHECKING:
     from coursework.figures import Figure, Picture
     from coursework.figures.polygons.construction import Construction
+    from coursework.kinds.kind import ComponentBox
     from coursework.sheets.answer_pages import AnswerPage
 
 
@@ -58,6 +59,12 @@ class Question:
     judge: str = ""  #: of the parts that are judged together with this one
     letters: tuple[str, ...] = ()  #: of the choices; none of a sheet that was issued without
     key: str = ""  #: what a notebook calls its answer; its id unless told
+    keys: tuple[
+        tuple[str, str], ...
+    ] = ()  #: above a telephone's keyboard: what a key shows, and what it types
+    types_numbers: bool = False  #: a keyboard of numbers does, with these keys
+    cells: tuple[tuple[ComponentBox, ...], ...] = ()  #: boxes for its components on a page, in groups
+    cells_form: str = ""  #: the text that they make, ``({} ; {})``
 
 
 @dataclass(frozen=True)

@@ -11,6 +11,7 @@ _POLICY = (
     ("img-src", "'self' data:"),
     ("style-src", "'self' 'unsafe-inline'"),
     ("script-src", "'self'"),
+    ("font-src", "'self'"),
     ("connect-src", "'self'"),
     ("form-action", "'self'"),
     ("base-uri", "'none'"),

@@ -3,7 +3,7 @@
   "use strict";
   const sheet = JSON.parse(document.getElementById("sheet-data").textContent);
   const said = sheet.words;
-  const boxes = Array.from(document.querySelectorAll("main input[name], main textarea[name]"));
+  const boxes = Array.from(document.querySelectorAll("main input[name]:not([data-cell]), main textarea[name]"));
   const bar = document.getElementById("keeping"), told = document.getElementById("kept");
 
   function tell(text) { if (told.textContent !== text) told.textContent = text; }
@@ -23,7 +23,7 @@
     for (const box of boxes) {
       const value = Object.prototype.hasOwnProperty.call(kept, box.name) ? kept[box.name] : "";
       if (isTicked(box)) box.checked = Array.isArray(value) && value.includes(box.value);
-      else box.value = typeof value === "string" ? value : "";
+      else { box.value = typeof value === "string" ? value : ""; box.dispatchEvent(new Event("filled")); }
     }
     document.dispatchEvent(new Event("answers:filled"));
   }

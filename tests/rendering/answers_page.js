@@ -10,6 +10,7 @@ function element(more) {
     addEventListener: (event, what) => { heard[event] = what; },
     fire: (event) => heard[event](),
     focus() { done.focused = this.name; },
+    dispatchEvent() {},
   }, more);
 }
 const boxes = sheet.boxes.map((box) => element(Object.assign({ value: "", checked: false }, box)));
@@ -19,7 +20,8 @@ let shown = "at first";
 parts.kept = { get textContent() { return shown; }, set textContent(text) { shown = text; done.told.push(text); } };
 globalThis.document = {
   getElementById: (id) => parts[id],
-  querySelectorAll: () => boxes,
+  querySelectorAll: (wanted) => boxes.filter((box) => wanted === "[data-form]" ? false : !("data-cell" in box)),
+  addEventListener() {},
   querySelector: () => main,
   body: { append() {} },
   dispatchEvent: () => true,

@@ -175,7 +175,7 @@ def test_what_a_page_says_rightly_is_marked_as_right(name, unit):
         ("number", 3.5, ["3.5"], "mm", "3.5 mm"),
         ("complex", 3 - 4j, ["3", "-4"], "ohm", "(3 - 4i) ohm"),
         ("vector", np.array([1.0, -2, 3]), ["1", "-2", "3"], "V", "(1 ; -2 ; 3) V"),
-        ("matrix", np.array([[1.5, -2], [3, 4]]), ["1.5", "-2", "3", "4"], "mm", "[1.5 -2; 3 4] mm"),
+        ("matrix", np.array([[1.5, -2], [3, 4]]), ["1.5", "-2", "3", "4"], "mm", "[[1.5 ; -2]; [3 ; 4]] mm"),
         ("twist", np.array([1.0, 0, -2]), ["1", "0", "-2"], "mm/s", "vx = 1 mm/s; vy = 0 mm/s; wz = -2 rad/s"),
     ],
 )  # fmt: skip

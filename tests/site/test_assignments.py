@@ -208,6 +208,29 @@ def test_a_hand_in_is_marked_and_has_a_receipt(class_of_three):
     assert told["sha256"] in browser.get(reply.headers["location"]).text
 
 
+def test_going_back_from_a_receipt_sends_no_form_again_and_leads_to_the_receipt(class_of_three):
+    number = dealt(class_of_three)
+    browser, address = class_of_three.browser(ZOE), f"/assignments/{number}"
+    assert browser.get(f"{address}/read-back").headers["location"] == address  # nothing is typed
+    sent = browser.post(address, data={"_seal": browser.seal, "e1-rA": "1"})
+    assert (sent.status_code, sent.headers["location"]) == (303, f"{address}/read-back")
+    assert "read as 1" in browser.get(f"{address}/read-back").text
+    reply = browser.fill(f"{address}/hand-in", {"e1-rA": "1", "_number": "1"})
+    assert browser.get(f"{address}/read-back").headers["location"] == reply.headers["location"]
+    browser.fill(f"{address}/keep", {"text.e1-rA": "2", "over.e1-rA": "1"})
+    page = browser.get(f"{address}/read-back")  # something else was typed since
+    assert (page.status_code, page.headers["cache-control"]) == (200, "no-store")
+    assert "read as 2" in page.text
+
+
+def test_a_time_is_told_by_its_moment_and_its_zone(class_of_three):
+    number = dealt(class_of_three)
+    reply = handed_in(class_of_three.browser(ZOE), number, {"e1-rA": "1"})
+    page = class_of_three.browser(ZOE).get(reply.headers["location"]).text
+    ((at, zone, text),) = re.findall(r'<time datetime="([^"]*)" data-zone="(\w+)" data-exact>([^<]*)<', page)
+    assert (datetime.fromisoformat(at), text.endswith(f"({zone})")) == (class_of_three.at, True)
+
+
 def test_blank_answers_are_handed_in_too(class_of_three):
     number = dealt(class_of_three)
     handed_in(class_of_three.browser(ZOE), number, {"e1-rA": "1"})

@@ -33,7 +33,7 @@ RANK = {None: 0, ZOE: 1, MAX: 1, PAUL: 2, CARA: 2, NINA: 2, OLAF: 1, IVY: 3, TEA
 
 #: From which role on a page is shown, and a form of it taken; none where it takes none.
 WHO = {
-    "/": (NOBODY, None), "/static/{name}": (NOBODY, None), "/language": (NOBODY, NOBODY), "/who": (NOBODY, NOBODY),
+    "/": (NOBODY, None), "/service-worker.js": (NOBODY, None), "/offline": (NOBODY, None), "/accessibility": (NOBODY, None), "/static/{name}": (NOBODY, None), "/language": (NOBODY, NOBODY), "/who": (NOBODY, NOBODY),
     "/sign-in": (NOBODY, NOBODY), "/invitation/{token}": (NOBODY, NOBODY),
     **dict.fromkeys(("/practice", "/assignments", "/account/data", "/progress/progress.json"), (STUDENTS, None)),
     **dict.fromkeys(("/sign-out", "/account", "/progress"), (STUDENTS, STUDENTS)),
@@ -44,7 +44,7 @@ WHO = {
     **{f"/assignments/{{number:int}}{end}": (STUDENTS, STUDENTS) for end in ("", "/keep", "/hand-in", "/file")},
     **{
         f"/assignments/{{number:int}}{end}": (STUDENTS, None)
-        for end in ("/feedback", "/receipts/{code}", "/receipts/{code}.{ending}", "/{file}")
+        for end in ("/read-back", "/feedback", "/receipts/{code}", "/receipts/{code}.{ending}", "/{file}")
     },
     "/desk": (ASSISTANTS, None), "/desk/receipts": (ASSISTANTS, None),
     **{

@@ -225,7 +225,10 @@ class Middleware:
             response.status_code = 200
             del response.headers["location"]
             response.headers["hx-redirect"] = address
-        if request.is_new and "immutable" not in response.headers.get("cache-control", ""):
+        is_shared = "immutable" in response.headers.get("cache-control", "")
+        if request.person is not None and not is_shared:
+            response.headers["x-person"] = str(request.person.id)
+        if request.is_new and not is_shared:
             set_cookie(request, response, COOKIE, request.browser.token, ANONYMOUS_SECONDS)
         return response
 

@@ -17,6 +17,7 @@ STATIC = Path(__file__).parents[1] / "static"
 KINDS = {
     ".css": "text/css; charset=utf-8",
     ".js": "text/javascript; charset=utf-8",
+    ".woff2": "font/woff2",
     ".svg": "image/svg+xml; charset=utf-8",
 }
 
@@ -28,6 +29,10 @@ _OF_SHEETS = {
     "motion.js": "motion/motion.js",
     "drawing.css": "parts/surface.css.j2",
     "drawing.js": "parts/drawing.js",
+    "fonts.css": "parts/fonts.css.j2",
+    "dark.css": "parts/dark.css.j2",
+    "cells.js": "parts/cells.js",
+    "keys.js": "parts/keys.js",
 }
 
 
@@ -59,7 +64,9 @@ class SitePages:
         """Return the content type and the bytes of a shared static file; None if there is no such file."""
         if name in _OF_SHEETS:
             env = environment_of(self._folder.template_folders, "en")
-            return KINDS[Path(name).suffix], render(env, _OF_SHEETS[name], {"paper": "a4"}).encode()
+            return KINDS[Path(name).suffix], render(
+                env, _OF_SHEETS[name], {"paper": "a4", "file": self.file}
+            ).encode()
         paths = {path.name: path for path in STATIC.iterdir() if path.suffix in KINDS}
         return (KINDS[paths[name].suffix], paths[name].read_bytes()) if name in paths else None
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from datetime import UTC, datetime, timedelta
 from urllib.parse import quote
 
 from starlette.responses import RedirectResponse, Response
@@ -39,6 +40,22 @@ def local(address: str, usual: str = "/") -> str:
 def redirect(address: str) -> Response:
     """Return a redirect to an address of this site."""
     return RedirectResponse(local(address), 303)
+
+
+_OFFLINE = timedelta(days=14)  #: for which a page opens without a network at most
+
+
+def opens_offline(response: Response, lasting: timedelta | None = None) -> Response:
+    """Return a page that its person may open again without a network (``static/service-worker.js``).
+
+    Parameters
+    ----------
+    lasting
+        Time for which it may; two weeks if None, and never longer.
+    """
+    until = datetime.now(UTC) + min(_OFFLINE, _OFFLINE if lasting is None else lasting)
+    response.headers["offline-until"] = str(int(until.timestamp()))
+    return response
 
 
 def set_cookie(request: Request, response: Response, name: str, value: str, seconds: int) -> None:

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from datetime import UTC, datetime, timedelta
 
+from markupsafe import Markup
+
 from coursework.issuing.papers import date_text
 from coursework.language.words import words
 
@@ -26,6 +28,21 @@ def exact_text(at: datetime, lang: str) -> str:
 
 def _time(here: datetime, form: str) -> str:
     return form.format(hour=here.hour, minute=f"{here.minute:02}", second=f"{here.second:02}")
+
+
+def time_element(at: datetime, lang: str, *, exact: bool = False) -> Markup:
+    """Return a time as an element of a page; a script writes it in the reader's time zone, and names that.
+
+    Parameters
+    ----------
+    exact
+        With its seconds.
+    """
+    text = f"{exact_text(at, lang)} ({zone_name(at)})" if exact else moment_text(at, lang)
+    stated = at.astimezone(UTC).isoformat(timespec="seconds")
+    return Markup('<time datetime="{}" data-zone="{}"{}>{}</time>').format(
+        stated, zone_name(at), Markup(" data-exact") if exact else "", text
+    )
 
 
 def zone_name(at: datetime) -> str:

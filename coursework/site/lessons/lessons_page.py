@@ -17,6 +17,7 @@ from coursework.sheets.book import BlanksPiece
 from coursework.site.frame.budgets import BOXES
 from coursework.site.frame.drafts import LONGEST
 from coursework.site.frame.requests import HTTPException, Request, Route
+from coursework.site.frame.responses import opens_offline
 from coursework.site.lessons.lesson_content import (
     example_of,
     exercises_of,
@@ -63,7 +64,7 @@ def lesson(request: Request) -> Response:
     folder = request.site.course.folder
     order = folder.lessons
     after = order[order.index(name) + 1] if name != order[-1] else ""
-    return request.render(
+    page = request.render(
         "site/student/lesson",
         lesson=opened,
         name=name,
@@ -80,6 +81,7 @@ def lesson(request: Request) -> Response:
         checked_example=next(iter(checked), 0),
         checked_complete=is_complete,
     )
+    return page if request.is_post else opens_offline(page)
 
 
 def _has(chapter: Any, lesson_name: str) -> bool:

@@ -195,7 +195,9 @@ class SiteHost:
         rules = []
         if state.phase is Phase.OPEN and state.assignment.own_publication.closes:
             rules.append(
-                str(site_texts["open_until"]).format(state.moment(state.assignment.own_publication.closes))
+                str(site_texts["open_until"]).format(
+                    moment_text(state.assignment.own_publication.closes, request.lang)
+                )
             )
         elif state.phase is Phase.LATE:
             rules.append(str(site_texts["late_now"]))

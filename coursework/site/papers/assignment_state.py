@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from datetime import datetime
 
+from markupsafe import Markup
 from sqlalchemy import Connection
 
 from coursework.database.publication import (
@@ -19,7 +20,7 @@ from coursework.database.submissions import Submission, attempts_used, submissio
 from coursework.issuing.assignment import text_in
 from coursework.language.numbers import localise, plain
 from coursework.site.frame.requests import HTTPException, Request
-from coursework.site.frame.times import length_text, moment_text
+from coursework.site.frame.times import length_text, moment_text, time_element
 from coursework.site.papers.student_paper import StudentPaper, student_paper
 from coursework.site.papers.submission import pass_dates
 
@@ -68,8 +69,9 @@ class AssignmentState:
         ends = self.closed_for_both if content == "feedback" else self.everybody_ends
         return self.assignment.own_publication.releases(content, self.now, ends, self.tries_left)
 
-    def moment(self, at: datetime | None) -> str:
-        return "" if at is None else moment_text(at, self.lang)
+    def moment(self, at: datetime | None) -> Markup:
+        """Return a time as an element of a page; empty for none."""
+        return Markup("") if at is None else time_element(at, self.lang)
 
     def percent(self, number: float) -> str:
         return localise(plain(number), self.lang)

@@ -26,8 +26,8 @@ from coursework.site.frame.budgets import ANSWER_FILE, BOXES, HAND_IN, MOST_ROWS
 from coursework.site.frame.drafts import draft_attributes, save_drafts, save_form_drafts, versions_of
 from coursework.site.frame.forms import read_upload
 from coursework.site.frame.requests import HTTPException, Request, Route, Upload
-from coursework.site.frame.responses import Download, redirect
-from coursework.site.frame.times import exact_text, length_text, zone_name
+from coursework.site.frame.responses import Download, opens_offline, redirect
+from coursework.site.frame.times import length_text, time_element, zone_name
 from coursework.site.lessons.lesson_content import linked_lessons
 from coursework.site.papers import receipts, submission
 from coursework.site.papers.assignment_state import (
@@ -73,7 +73,12 @@ def paper_page(request: Request) -> Response:
         return _read_back(request, state, paper)
     if not state.may_hand_in and state.done:
         return redirect(f"{state.address}/receipts/{state.done[-1].receipt}")
-    return _paper_response(request, state, paper)
+    page = _paper_response(request, state, paper)
+    rules = state.assignment.own_publication
+    closes = rules.closes if state.phase is Phase.OPEN else rules.ends
+    if not state.may_hand_in:
+        return page
+    return opens_offline(page, None if closes is None else closes - state.now)
 
 
 def _paper_response(
@@ -108,7 +113,7 @@ def save_draft(request: Request) -> Response:
         request,
         sheet,
         {*paper.fields, *paper.drawings},
-        lambda name, text: paper.read(name, text).message,
+        lambda name, text: str(paper.read(name, text).html),
         state.may_hand_in,
     )
 
@@ -121,7 +126,35 @@ def _read_back(request: Request, state: AssignmentState, paper: StudentPaper) ->
     boxes = _save_form(request, state, paper, texts | paper.drawing_texts(request.form))
     if not any(text.strip() for text in texts.values()):
         return _paper_response(request, state, paper, boxes, messages["nothing_typed"], 422)
+    if _stored_texts(request, state, paper) == texts and not _is_submitted(request, state, paper, texts):
+        return redirect(f"{state.address}/read-back")
+    return _confirming(request, state, paper, texts, ON_THE_PAGE)  # or another page holds other drafts
+
+
+def read_back_page(request: Request) -> Response:
+    """Return the reading of the drafts, for confirmation; of what is submitted already, its receipt."""
+    state, paper = state_and_paper(request)
+    texts = _stored_texts(request, state, paper)
+    is_blank = not any(text.strip() for text in texts.values())
+    if state.done and (is_blank or not state.may_hand_in or _is_submitted(request, state, paper, texts)):
+        return redirect(f"{state.address}/receipts/{state.done[-1].receipt}")
+    if is_blank or not state.may_hand_in:
+        return redirect(state.address)
     return _confirming(request, state, paper, texts, ON_THE_PAGE)
+
+
+def _is_submitted(
+    request: Request, state: AssignmentState, paper: StudentPaper, texts: Mapping[str, str]
+) -> bool:
+    with request.site.store.reading() as connection:
+        return bool(state.done) and submission.holds(connection, state.done[-1], paper, texts)
+
+
+def _stored_texts(request: Request, state: AssignmentState, paper: StudentPaper) -> dict[str, str]:
+    """Return the drafts by box; empty for a box without one."""
+    with request.site.store.reading() as connection:
+        stored = drafts(connection, request.user.id, sheet_of(state.assignment, paper))
+    return {name: stored[name].text if name in stored else "" for name in paper.fields}
 
 
 def _save_form(
@@ -276,7 +309,7 @@ def receipt(request: Request) -> Response:
     }
     return request.render(
         "site/student/assignment_receipt", state=state, row=row, told=content, lines=read_lines(paper, texts),
-        came=exact_text(row.received_at, request.lang), zone=zone_name(row.received_at), again=again if again in ("same", "other") else "",
+        came=time_element(row.received_at, request.lang, exact=True), again=again if again in ("same", "other") else "",
         late=length_text(timedelta(seconds=row.late), request.lang) if row.late else "",
         charged=charged_text(state.assignment.own_publication.charged(row.late), request.lang) if state.assignment.own_publication.charged(row.late) else "",
         saved=row.source == submission.AS_SAVED, feedback_from=feedback_from(request, state),
@@ -288,10 +321,10 @@ def feedback_from(request: Request, state: AssignmentState) -> str:
     """Return the time of the feedback, as a sentence."""
     messages, rules = request.words["assignments"]["feedback_when"], state.assignment.own_publication
     if rules.feedback == "date":
-        return str(messages["date"]).format(state.moment(rules.feedback_on))
+        return Markup(messages["date"]).format(state.moment(rules.feedback_on))
     if rules.feedback == "closed":
         ends = state.closed_for_both
-        return str(messages["closed"]).format(state.moment(ends)) if ends else ""
+        return Markup(messages["closed"]).format(state.moment(ends)) if ends else ""
     return str(messages[rules.feedback])
 
 
@@ -336,6 +369,7 @@ ROUTES = (
         budget=BOXES,
         is_short=True,
     ),
+    Route("/assignments/{number:int}/read-back", read_back_page, Permission.OWN, limit="paper"),
     Route(
         "/assignments/{number:int}/hand-in",
         confirm,

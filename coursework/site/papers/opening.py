@@ -16,6 +16,7 @@ from coursework.database.prepared import PreparedPieces, prepare_later, prepared
 from coursework.database.publication import Phase, is_over, student_assignments
 from coursework.database.tables import person
 from coursework.errors import BadInput
+from coursework.sheets.cells import filled_cells
 from coursework.site.frame.drafts import box_values
 from coursework.site.frame.lru_cache import LRUCache
 from coursework.site.frame.settings import Site
@@ -24,6 +25,7 @@ from coursework.site.papers.student_paper import StudentPaper, Texts, student_pa
 _BOX = re.compile(r"<(?:input|textarea)\b[^>]*>")
 _ATTRIBUTE = re.compile(r' ([a-z-]+)="([^"]*)"')
 _AFTER_NAME = re.compile(r' name="[^"]*"(?: class="[^"]*")?')
+_CLOSED = re.compile(r'<details class="one-line">(?=(?:<(?!input)|[^<])*<input[^>]* value=")')
 _AFTER_VALUE = re.compile(r' value="[^"]*"')
 
 
@@ -79,8 +81,15 @@ def _langs(site: Site, person_id: int) -> tuple[str, ...]:
 
 def filled_in(body: str, texts: Texts) -> str:
     """Return the body of a page with texts in its boxes, by their names."""
-    values = {name: box_values(text) for name, text in texts.items() if text}
-    return _BOX.sub(partial(_filled, values), body) if values else body
+    values = {name: box_values(text) for name, text in filled_cells(texts, _forms(body)).items() if text}
+    filled = _BOX.sub(partial(_filled, values), body) if values else body
+    return _CLOSED.sub(lambda tag: f"{tag[0][:-1]} open>", filled)
+
+
+def _forms(body: str) -> dict[str, str]:
+    """Return the forms of the texts that boxes of components make, by the name of the whole."""
+    boxes = (dict(_ATTRIBUTE.findall(tag)) for tag in _BOX.findall(body) if " data-form=" in tag)
+    return {unescape(box["name"]): unescape(box["data-form"]) for box in boxes}
 
 
 def _filled(values: Mapping[str, list[str]], match: re.Match[str]) -> str:

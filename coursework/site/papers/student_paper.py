@@ -8,6 +8,7 @@ from functools import cached_property, partial
 from json import dumps
 from typing import Any, NamedTuple
 
+from markupsafe import Markup, escape
 from sqlalchemy import Connection
 
 from coursework.course.course import Course
@@ -21,12 +22,13 @@ from coursework.issuing.issued import Issued
 from coursework.language.words import words
 from coursework.marking.answers import read
 from coursework.marking.feedback import say_not_read
-from coursework.markup.markdown import plain_line
+from coursework.markup.markdown import html_inline, plain_line
 from coursework.model import Part
 from coursework.rendering import papers
 from coursework.rendering.environment import render
 from coursework.rendering.html import environment_of
 from coursework.selfstudy.attempt import read_back as readings
+from coursework.sheets.cells import answer_in, cell_names, form_of, is_incomplete
 from coursework.sheets.paper import FeedbackPaper, Paper, PaperHeading
 from coursework.site.frame.drafts import DRAWING, LONGEST, longest
 from coursework.site.frame.lru_cache import LRUCache
@@ -60,6 +62,12 @@ class ReadBack(NamedTuple):
 
     status: str  #: ``read``, ``waits`` for a person, ``missing``, ``unreadable`` or ``wrong_unit``
     message: str  #: plain text; empty for an empty box
+    typeset: Markup = Markup("")  #: the same with formulas; empty where it has none
+
+    @property
+    def html(self) -> Markup:
+        """Message as a piece of a page."""
+        return self.typeset or escape(self.message)
 
     @property
     def is_in_doubt(self) -> bool:
@@ -76,9 +84,11 @@ def read_back(variant: Any, part: Part, text: str) -> ReadBack:
         return ReadBack(reading.status, say_not_read(variant, part, reading).texts(variant.lang)[1])
     if part.sort.is_open:
         return ReadBack("waits", texts["waits"])
-    lines = [plain_line(line, variant.lang) for line in readings(variant, part, text)[1]]
+    lines = readings(variant, part, text)[1]
     form = texts["two"] if len(lines) > 1 else texts["read_as"]
-    return ReadBack("read", form.format(*lines))
+    plain = form.format(*(plain_line(line, variant.lang) for line in lines))
+    typeset = html_inline(form.format(*lines), variant.lang) if "$" in "".join(lines) else ""
+    return ReadBack("read", plain, Markup(typeset))
 
 
 @dataclass(frozen=True)
@@ -171,6 +181,8 @@ class StudentPaper:
     def read(self, name: str, text: str) -> ReadBack:
         """Return the reading of a text in a box."""
         box = self.boxes[name]
+        if is_incomplete(text, form_of(box.variant, box.part)):
+            return ReadBack("unreadable", words(box.variant.lang, "site")["read_back"]["incomplete"])
         return read_back(box.variant, box.part, text)
 
     def texts(self, form: FormData) -> dict[str, str]:
@@ -181,10 +193,14 @@ class StudentPaper:
         HTTPException
             A field is not a box of the paper, or its text is too long.
         """
-        names = {*self.fields, *self.drawings}
-        if strange := [name for name in form.texts if name not in names and not name.startswith("_")]:
+        others = [name for name in form.texts if name not in {*self.fields, *self.drawings} and not name.startswith("_")]
+        cells = [name for name in others if name.rpartition("-")[0] in self.fields]
+        forms = dict.fromkeys(name.rpartition("-")[0] for name in cells)
+        for name in forms:
+            forms[name] = form_of(self.boxes[name].variant, self.boxes[name].part)
+        if strange := {*others} - {cell for name in forms for cell in cell_names(name, forms[name] or "")}:
             raise HTTPException("bad_request", 400, len(strange))
-        answers = {name: ", ".join(form.texts.get(name, ())) for name in self.fields}
+        answers = {name: answer_in(form.texts, name, forms.get(name) or "") for name in self.fields}
         if any(len(text) > LONGEST for text in answers.values()):
             raise HTTPException("too_large", 413, LONGEST)
         return answers

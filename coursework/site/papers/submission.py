@@ -114,10 +114,10 @@ def store_submission(
     done = submissions_of(connection, assignment.id, person_id)
     before = done[number - 1] if number <= len(done) else None
     if before is not None:
-        is_same = _holds(connection, before, paper, texts)
+        is_same = holds(connection, before, paper, texts)
         if is_same or before.source != AS_SAVED or not _takes(assignment, at, site.clock()):
             return SubmissionResult(before, False, not is_same)
-    if done and _holds(connection, done[-1], paper, texts):
+    if done and holds(connection, done[-1], paper, texts):
         return SubmissionResult(done[-1], False)  # equal answers cost no attempt
     now = _check(connection, assignment, person_id, at, site.clock(), done)
     submission = _deliver(connection, assignment, paper, person_id, texts, now, source)
@@ -125,7 +125,8 @@ def store_submission(
     return SubmissionResult(submission, True)
 
 
-def _holds(connection: Connection, submission: Submission, paper: StudentPaper, texts: Texts) -> bool:
+def holds(connection: Connection, submission: Submission, paper: StudentPaper, texts: Texts) -> bool:
+    """Return True if a submission consists of these texts, by box."""
     return answers_of(connection, submission.id) == content_of(paper, texts)
 
 

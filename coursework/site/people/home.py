@@ -47,6 +47,23 @@ def shared_file(request: Request) -> Response:
     return Response(data, headers=headers, media_type=media_type)
 
 
+def service_worker(request: Request) -> Response:
+    """Return the script that opens seen pages without a network; it stands at the root, since it is for all pages."""
+    static_file = request.site.pages.static("service-worker.js")
+    assert static_file is not None
+    return Response(static_file[1], media_type=static_file[0])
+
+
+def offline(request: Request) -> Response:
+    """Return the page that stands for one that was not seen before the network went."""
+    return request.render("site/offline", title=request.words["offline"]["title"])
+
+
+def accessibility(request: Request) -> Response:
+    """Return the declaration of accessibility."""
+    return request.render("site/accessibility", title=request.words["accessibility"]["title"])
+
+
 def choose_person(request: Request) -> Response:
     """Choose the current user; only in a demonstration."""
     if request.site.entrance is not Entrance.DEMO:
@@ -86,6 +103,9 @@ def owner(site: Site) -> int:
 
 ROUTES = (
     Route("/", first, Permission.PUBLIC),
+    Route("/service-worker.js", service_worker, Permission.PUBLIC, limit=FREE),
+    Route("/offline", offline, Permission.PUBLIC),
+    Route("/accessibility", accessibility, Permission.PUBLIC),
     Route("/static/{name}", shared_file, Permission.PUBLIC, limit=FREE),
     Route("/language", choose_language, Permission.PUBLIC, takes_forms=True, budget=PLAIN),
     Route("/who", choose_person, Permission.PUBLIC, takes_forms=True, budget=PLAIN),

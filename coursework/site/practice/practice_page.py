@@ -25,7 +25,7 @@ from coursework.sheets.answer_sheet import answer_sheet
 from coursework.site.frame.budgets import BOXES, PLAIN
 from coursework.site.frame.drafts import save_drafts
 from coursework.site.frame.requests import HTTPException, Request, Route
-from coursework.site.frame.responses import redirect
+from coursework.site.frame.responses import opens_offline, redirect
 from coursework.site.lessons.lesson_content import LessonLink, lesson_address
 from coursework.site.papers.assignment_state import to_hand_in
 from coursework.site.practice.contents import ChapterEntry, contents, exercise_title, next_of
@@ -36,7 +36,7 @@ def course(request: Request) -> Response:
     """Return the page of the course: its order of study, the person's progress, and the next step."""
     progress = PersonProgress(request.site.store, request.user.id, request.site.clock).progress
     going = next(begun(request, progress), None)
-    return request.render(
+    page = request.render(
         "site/student/practice",
         title=request.words["practice"]["title"],
         chapters=contents(request, progress),
@@ -45,6 +45,7 @@ def course(request: Request) -> Response:
         next=next_of(request, progress),
         due=to_hand_in(request),
     )
+    return opens_offline(page)
 
 
 def exercise(request: Request) -> Response:
@@ -67,7 +68,7 @@ def sheet(request: Request) -> Response:
     if request.is_post:
         return _form_response(request, work)
     _warm(request, work)
-    return _page(request, work, work.attempt.marked(), work.box_contents())
+    return opens_offline(_page(request, work, work.attempt.marked(), work.box_contents()))
 
 
 class BegunVariant(NamedTuple):

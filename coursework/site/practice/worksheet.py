@@ -7,6 +7,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from functools import cached_property
 from html import escape
+from itertools import repeat
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from markupsafe import Markup
@@ -33,6 +34,7 @@ from coursework.selfstudy.attempt import (
 )
 from coursework.selfstudy.progress import HINT, REVEAL, ExerciseStore, is_blank
 from coursework.selfstudy.worked import theory
+from coursework.sheets.cells import answer_in, cell_names, form_of, in_cells, is_incomplete
 from coursework.sheets.handout import handout
 from coursework.site.frame.drafts import (
     DRAWING,
@@ -175,7 +177,12 @@ class Worksheet:
     def typed(self) -> dict[str, str]:
         """Texts of a form, by part; empty for a blank box, and if nothing is ticked."""
         texts = self.request.form.texts
-        return {name: ", ".join(texts.get(BOX_PREFIX + name, ()))[:LONGEST] for name in self.parts}
+        return {name: answer_in(texts, BOX_PREFIX + name, self.forms[name])[:LONGEST] for name in self.parts}
+
+    @cached_property
+    def forms(self) -> Mapping[str, str]:
+        """Forms of the texts that boxes of components make, by part."""
+        return {name: form_of(self.variant, part) for name, part in self.parts.items()}
 
     @property
     def _form_texts(self) -> dict[str, str]:
@@ -250,6 +257,8 @@ class Worksheet:
         part, texts = self.parts[name], self.request.words["practice"]
         if part.choices or is_blank(text):
             return Markup("")
+        if is_incomplete(text, self.forms[name]):
+            return Markup(escape(self.request.words["read_back"]["incomplete"]))
         is_read, readings = read_back(self.variant, part, text)
         if is_read:
             line = texts["read_as"].format(texts["or"].join(readings)) if readings else ""
@@ -400,9 +409,7 @@ class Worksheet:
         return {
             **context,
             "own": BOX_PREFIX,
-            "filled": {
-                BOX_PREFIX + n: _ticked(self.variant, self.parts[n], text) for n, text in contents.items()
-            }
+            "filled": dict(item for n, text in contents.items() for item in self._filled(n, text))
             | {BOX_PREFIX + n: (box.text,) for n, box in self.drafts.items() if n == DRAWING},
             "draws": self.draws,
             "before_questions": "site/student/_practice_before.html.j2",
@@ -421,6 +428,12 @@ class Worksheet:
                 self.request, f"{self.address}/draft", self.name, self.drafts, BOX_PREFIX, **texts
             ),
         }
+
+    def _filled(self, name: str, text: str) -> Iterator[tuple[str, Any]]:
+        """Yield what stands in the boxes of a part, by their names."""
+        cells = in_cells(text, self.forms[name])
+        yield BOX_PREFIX + name, () if cells else _ticked(self.variant, self.parts[name], text)
+        yield from zip(cell_names(BOX_PREFIX + name, self.forms[name]), cells or repeat(""), strict=False)
 
     @property
     def lessons(self) -> tuple[Lesson, ...]:

@@ -141,7 +141,7 @@
   // ------------------------------------------------------------------------ boxes
   const boxesOf = (form) => Array.from(form.elements).filter((box) =>
     box.name && box.name[0] !== "_" && box.name.startsWith(form.dataset.keepOwn || "") &&
-    box.matches("input, textarea, select") && !["hidden", "file", "submit"].includes(box.type));
+    box.matches("input:not([data-cell]), textarea, select") && !["hidden", "file", "submit"].includes(box.type));
   const nameOf = (form, box) => box.name.slice((form.dataset.keepOwn || "").length);
 
   // What stands in the boxes, a text a name; of ticks their values in order. Or what stood there as the page was made.
@@ -164,7 +164,7 @@
     for (const box of boxesOf(form)) {
       if (nameOf(form, box) !== name) continue;
       if (isTicked(box)) box.checked = ticked.includes(box.value);
-      else box.value = text;
+      else { box.value = text; box.dispatchEvent(new Event("filled")); }
     }
   }
 
@@ -302,10 +302,10 @@
       made.setAttribute("data-" + kind, box.name);
       if (kind === "other") made.setAttribute("role", "alert");
       else if (!isTicked(box)) box.setAttribute("aria-describedby", made.id);
-      (box.closest("fieldset") || box.closest(".box") || box).after(made);
+      (box.closest("fieldset") || box.closest(".box, .cells") || box).after(made);
       return made;
     }
-    read(name, text) { const place = this.place(name, "read"); if (place) place.textContent = text; }
+    read(name, html) { const place = this.place(name, "read"); if (place) place.innerHTML = html; }
     // What other pages wrote stands beside one's own until one is chosen.
     ask(name) {
       const texts = this.pending[name].beside, place = this.place(name, "other");

@@ -1,4 +1,38 @@
 // What all pages share. Each page works without it.
 (function () {
   "use strict";
+  // Times in the reader's zone, which is named where it is another than the server's.
+  const times = document.querySelectorAll("time[datetime]");
+  for (const time of times) {
+    const seconds = "exact" in time.dataset ? { second: "2-digit" } : {};
+    const how = { year: "numeric", month: "long", day: "numeric", hour: "2-digit", minute: "2-digit", timeZoneName: "short", ...seconds };
+    const at = new Date(time.dateTime);
+    if (isNaN(at)) continue;
+    time.title = "exact" in time.dataset ? time.textContent : time.textContent + " (" + time.dataset.zone + ")";
+    time.textContent = new Intl.DateTimeFormat(document.documentElement.lang === "en" ? "en-GB" : document.documentElement.lang, how).format(at);
+  }
+  if (times.length) document.querySelectorAll("[data-zone-said]").forEach((one) => { one.hidden = true; });
+
+  // Pages that were seen open without a network, too; a form that meets none stays, and tells so.
+  const offline = () => document.querySelectorAll("form[data-keep]").forEach((form) => {
+    form.dispatchEvent(new CustomEvent("keep:tell", { detail: { text: JSON.parse(form.dataset.keepWords).offline } }));
+  });
+  document.addEventListener("submit", (event) => {
+    if (navigator.onLine || !event.target.matches("form[data-keep]:not([hx-post])")) return;
+    event.preventDefault();
+    offline();
+  });
+  const workers = window.isSecureContext && navigator.serviceWorker;
+  if (workers && document.body.dataset.person) {
+    workers.addEventListener("message", (event) => { if (event.data.offline) offline(); });
+    const isNew = !workers.controller;
+    workers.register("/service-worker.js").then(() => workers.ready).then((one) => {
+      const files = performance.getEntriesByType("resource").map((file) => file.name).filter((name) => name.startsWith(location.origin + "/static/"));
+      if (isNew) one.active.postMessage({ seen: location.href, files: files });
+    }).catch(() => undefined);
+  }
+
+  // A page that answers a form is not sent again when it is gone back to.
+  const address = document.body.querySelector("[data-address]");
+  if (address) history.replaceState(null, "", address.dataset.address);
 })();

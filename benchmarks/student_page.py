@@ -1,0 +1,101 @@
+"""A student's page in Chromium, as a telephone on a slow line has it: bytes cold and warm, first paint, taps to a marked answer, axe.
+
+    python benchmarks/student_page.py [EXERCISE]      slotted_mechanism; half a minute
+
+The line is emulated: 400 ms, 50 kB/s each way. It prints a Markdown table, which stands in docs/site.md.
+"""
+
+from __future__ import annotations
+
+import sys
+import tempfile
+from pathlib import Path
+from typing import Any
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "tests"))
+
+from site_browser import chromium, context_of, served
+from site_people import ZOE, Class
+from site_practising import right_answer
+from timing import print_table
+
+LINE = {"offline": False, "latency": 400, "downloadThroughput": 50_000, "uploadThroughput": 50_000}
+PAINT = "performance.getEntriesByName('first-contentful-paint')[0].startTime"
+
+
+class Measured:
+    """A page that counts the bytes that come, as they are on the line."""
+
+    def __init__(self, context: Any):
+        self.page = context.new_page()
+        self.session = context.new_cdp_session(self.page)
+        self.session.send("Network.enable")
+        self.session.send("Network.emulateNetworkConditions", LINE)
+        self.bytes = 0
+        self.session.on("Network.loadingFinished", self._count)
+
+    def _count(self, event: Any) -> None:
+        self.bytes += int(event["encodedDataLength"])
+
+    def open(self, address: str) -> tuple[float, float]:
+        """Return kilobytes and seconds to the first paint."""
+        self.bytes = 0
+        self.page.goto(address, wait_until="networkidle")
+        self.page.wait_for_timeout(1500)
+        return self.bytes / 1000, self.page.evaluate(PAINT) / 1000
+
+
+def findings(page: Any) -> int:
+    """Return how many rules of axe a page breaks."""
+    from axe_core_python.sync_playwright import Axe
+
+    return len(Axe().run(page)["violations"])
+
+
+def main(exercise: str) -> None:
+    folder = tempfile.mkdtemp()
+    class_ = Class(f"sqlite:///{folder}/site.db")
+    rows = []
+    with served(class_) as address, chromium() as browser:
+        context_of(browser, class_, address, ZOE).new_page().goto(
+            f"{address}/practice/{exercise}"
+        )  # the course is read
+        # Bytes that a service worker asks for are counted nowhere.
+        context = context_of(browser, class_, address, ZOE, service_workers="block")
+        measured = Measured(context)
+        cold, first = measured.open(f"{address}/practice/{exercise}")
+        warm, again = measured.open(measured.page.url)
+        rows += [("cold page, kB", f"{cold:.0f}"), ("first paint, s", f"{first:.2f}")]
+        rows += [("warm page, kB", f"{warm:.0f}"), ("first paint, s", f"{again:.2f}")]
+        page, taps = measured.page, 0
+        name, seed = page.url.rsplit("/", 2)[1:]
+        variant = class_.site.variant(name, int(seed), "en")
+        part = next(part for part in variant.parts if part.sort.is_number)
+        for selector in (f"#answer-a-{part.id}", f"#below-a-{part.id} button[name=check]"):
+            page.tap(selector)
+            taps += 1
+            if taps == 1:
+                page.keyboard.type(right_answer(variant, part))
+        page.wait_for_selector(f"#told-a-{part.id} .right")
+        rows.append(("taps from the open page to a marked number", str(taps)))
+        context.close()
+        for scheme in ("light", "dark"):
+            context = context_of(browser, class_, address, ZOE, color_scheme=scheme)
+            page, found = context.new_page(), 0
+            for place in (
+                "/practice",
+                f"/practice/{exercise}",
+                "/progress",
+                "/assignments",
+                "/account",
+                "/accessibility",
+            ):
+                page.goto(address + place)
+                found += findings(page)
+            rows.append((f"axe, {scheme}: rules broken on six pages", str(found)))
+            context.close()
+    print_table(("measure", "value"), rows)
+
+
+if __name__ == "__main__":
+    main(*sys.argv[1:2] or ["slotted_mechanism"])

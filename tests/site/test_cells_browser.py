@@ -1,0 +1,63 @@
+"""Boxes of components in Chromium: they and the line follow each other, what is pasted is spread, without a script they are joined."""
+
+import pytest
+from site_browser import chromium, context_of, served, told
+from site_people import MAX, ZOE, Class
+
+pytestmark = pytest.mark.e2e
+PART = "a-V_plane"
+
+
+@pytest.fixture(scope="module")
+def window(tmp_path_factory):
+    """Open a practice page of joint_twist for somebody."""
+    class_ = Class(f"sqlite:///{tmp_path_factory.mktemp('site')}/site.db")
+    with served(class_) as address, chromium() as browser:
+        opened = []
+
+        def open_(name, **how):
+            opened.append(context_of(browser, class_, address, name, **how))
+            page = opened[-1].new_page()
+            page.goto(f"{address}/practice/joint_twist")
+            return page
+
+        yield open_
+        for context in opened:
+            context.close()
+
+
+def cells(page, name=PART, count=3):
+    return [page.input_value(f"#answer-{name}-{index}") for index in range(1, count + 1)]
+
+
+def test_boxes_and_line_follow_each_other_and_what_is_pasted_is_spread(window):
+    page = window(ZOE)
+    page.fill(f"#answer-{PART}-1", "{1,5 ; 2 ; -3}")
+    assert cells(page) == ["1,5", "2", "-3"]
+    page.fill(f"#answer-{PART}-2", "20")
+    assert page.input_value(f"#answer-{PART}") == "vx = 1,5; vy = 20; wz = -3"
+    page.wait_for_selector("#read-a-V_plane:has-text('1.5; 20; −3')")
+    page.fill("#answer-a-V_10-1", "{0 10; 0 20; 5 0}")  # a row of each column
+    assert cells(page, "a-V_10", 6) == ["0", "0", "5", "10", "20", "0"]
+    page.fill("#answer-a-W-2", "7")
+    page.locator("#answer-a-W").evaluate("one => one.closest('details').open = true")
+    page.fill("#answer-a-W", "1 2 3 | 4 5 6")
+    assert cells(page, "a-W", 6) == ["1", "2", "3", "4", "5", "6"]
+    told(page, "Saved")
+    page.reload()
+    assert [cells(page), cells(page, "a-W", 6)[5]] == [["1,5", "20", "-3"], "6"]
+    page.click(f"#below-{PART} button[name=check]")
+    page.wait_for_selector(f"#told-{PART} p")
+
+
+def test_without_a_script_the_boxes_are_joined_and_filled_again(window):
+    page = window(MAX, script=False)
+    for index, text in enumerate(("1,5", "2", "-3"), 1):
+        page.fill(f"#answer-{PART}-{index}", text)
+    page.click(f"#below-{PART} button[name=check]")
+    assert "(1.5; 2; −3)" in page.inner_text(f"#told-{PART}")
+    assert (cells(page), page.input_value(f"#answer-{PART}")) == (["1,5", "2", "-3"], "")
+    page.fill(f"#answer-{PART}-2", "")
+    page.click(f"#below-{PART} button[name=check]")
+    assert "blank" in page.inner_text(f"#read-{PART}")
+    assert cells(page) == ["1,5", "", "-3"]
