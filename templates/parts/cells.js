@@ -26,17 +26,26 @@
     return turned ? [0, 1].flatMap((column) => found.map((row) => row[column])) : found.flat();
   }
   function fill(line, texts) { cells(line).forEach((cell, index) => { cell.value = texts ? texts[index] : ""; }); }
+  // A drawing, too, hears of the line by its own name.
+  let tells = false;
+  function tell(line) {
+    line.value = joined(line);
+    tells = true;
+    line.dispatchEvent(new Event("input", { bubbles: true }));
+    tells = false;
+  }
   function spread(line) { fill(line, components(line.value, line)); }
 
   // Before all other listeners: these read the line.
   document.addEventListener("input", (event) => {
     const box = event.target;
+    if (tells) return;
     if (box.dataset.form) { spread(box); return; }
     if (!box.dataset.cell) return;
     const line = named(box.dataset.cell);
     const whole = event.inputType !== "insertText" || (event.data || "").length > 1 ? components(box.value, line) : null;
     if (whole) fill(line, whole);
-    line.value = joined(line);
+    tell(line);
   }, true);
   document.addEventListener("paste", (event) => {
     const line = event.target.dataset && event.target.dataset.cell && named(event.target.dataset.cell);
@@ -44,8 +53,7 @@
     if (!whole) return;
     event.preventDefault();
     fill(line, whole);
-    line.value = joined(line);
-    line.dispatchEvent(new Event("input", { bubbles: true }));
+    tell(line);
   });
   document.addEventListener("filled", (event) => { if (event.target.dataset.form) spread(event.target); }, true);
   document.querySelectorAll("[data-form]").forEach((line) => {

@@ -193,7 +193,11 @@ class StudentPaper:
         HTTPException
             A field is not a box of the paper, or its text is too long.
         """
-        others = [name for name in form.texts if name not in {*self.fields, *self.drawings} and not name.startswith("_")]
+        others = [
+            name
+            for name in form.texts
+            if name not in {*self.fields, *self.drawings} and not name.startswith("_")
+        ]
         cells = [name for name in others if name.rpartition("-")[0] in self.fields]
         forms = dict.fromkeys(name.rpartition("-")[0] for name in cells)
         for name in forms:
