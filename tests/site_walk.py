@@ -240,9 +240,10 @@ def filled(path: str, places: dict) -> str:
 
 
 def text_of(reply) -> str:
-    """What a reply says; of an archive, all that is in it, the cells of its tables apart as no decimal comma is."""
+    """What a reply says, but for the coordinates of drawn lines, among which any number is by chance; of an archive, all that is in
+    it, the cells of its tables apart as no decimal comma is."""
     if not zipfile.is_zipfile(io.BytesIO(reply.content)):
-        return reply.text
+        return re.sub(r' d="[MLHVCSQTAZmlhvcsqtaz\d\s.,+-]*"', "", reply.text)
     with zipfile.ZipFile(io.BytesIO(reply.content)) as archive:
         texts = {name: archive.read(name).decode("utf-8", "replace") for name in archive.namelist()}
     return "\n".join(

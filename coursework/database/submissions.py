@@ -21,6 +21,7 @@ from sqlalchemy import (
     Connection,
     Select,
     bindparam,
+    exists,
     func,
     insert,
     literal_column,
@@ -31,7 +32,7 @@ from sqlalchemy import (
 
 from coursework.database.assignments import issued_of
 from coursework.database.store import insert_unless_there
-from coursework.database.tables import answer, dealt, delivery, marking, rejected, seen, variant
+from coursework.database.tables import answer, dealt, delivery, drawing, marking, rejected, seen, variant
 from coursework.gradebook.placing import UnplacedError, student_of
 from coursework.gradebook.rows import AnswerRow, PlatformFile, Rejected, RowOrigin
 from coursework.issuing.issued import Issued
@@ -196,7 +197,25 @@ def _put_rows(
             connection.execute(insert(table), lines[start : start + _CHUNK])
 
 
+def put_drawings(connection: Connection, submission: Submission, texts: Mapping[str, str]) -> None:
+    """Store the drawings of a submission, by exercise."""
+    rows = [{"exercise": exercise, "text": text} for exercise, text in texts.items()]
+    if rows:
+        connection.execute(insert(drawing), [{"delivery_id": submission.id, **row} for row in rows])
+
+
 # ---------------------------------------------------------------------- reading
+
+
+def drawings_of(connection: Connection, assignment_id: int, student: str) -> dict[tuple[int, str], str]:
+    """Return the drawings that a student submitted for an assignment, by attempt and exercise."""
+    query = (
+        select(delivery.c.number, drawing.c.exercise, drawing.c.text)
+        .join(drawing, drawing.c.delivery_id == delivery.c.id)
+        .where(delivery.c.assignment_id == assignment_id)
+        .where(exists().where(answer.c.delivery_id == delivery.c.id, answer.c.student == student))
+    )
+    return {(row.number, row.exercise): row.text for row in connection.execute(query)}
 
 
 def submissions_of(

@@ -260,6 +260,16 @@ answer = Table(
     ),  #: statements of a platform about it (:class:`coursework.gradebook.rows.RowOrigin`)
 )
 
+#: Drawing of an exercise, as it was when the answers were submitted (:mod:`coursework.figures.student_drawing`).
+drawing = Table(
+    "drawing",
+    METADATA,
+    _key(),
+    _of("delivery", index=True),
+    Column("exercise", SafeText, nullable=False),
+    Column("text", SafeText, nullable=False),
+)
+
 #: Row that could not be placed or read, with the reason.
 rejected = Table(
     "rejected",

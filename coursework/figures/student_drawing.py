@@ -189,6 +189,14 @@ class StudentDrawing:
         return (line(start, end),)
 
 
+def is_drawn(text: str) -> bool:
+    """Return whether a text is a drawing with at least one item."""
+    try:
+        return bool(StudentDrawing.parse(text).items)
+    except BadInput:
+        return False
+
+
 def _item(entry: Any) -> DrawnItem:
     kind = entry.get("k") if isinstance(entry, dict) else None
     if not isinstance(kind, str) or kind not in _NUMBERS:

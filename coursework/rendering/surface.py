@@ -4,16 +4,19 @@ from __future__ import annotations
 
 import cmath
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 from markupsafe import Markup
 
+from coursework.errors import BadInput
 from coursework.figures import Figure, pin, rail, slot_link
 from coursework.figures.elements import bar, contact, ground_pivot, point, slider
-from coursework.figures.student_drawing import MOST_CHARACTERS
+from coursework.figures.student_drawing import MOST_CHARACTERS, StudentDrawing
 from coursework.figures.text import LabelText, read
 from coursework.language.words import words
+from coursework.model import Exercise
 from coursework.rendering.keeping import in_script
 from coursework.sheets.sheet import Handout, Question
 
@@ -85,6 +88,20 @@ class DrawingSurface:
             "words": table["drawing"]["script"],
         }
         return in_script(settings)
+
+
+def has_surface(exercise: Exercise, record: Mapping[str, Any]) -> bool:
+    """Return whether sheets of a variant's record have a surface; without the sheet."""
+    is_paper = exercise.drawing_mm or exercise.surface_mm
+    return bool(is_paper) or any(part["kind"] in _GRAPHS for part in record["parts"])
+
+
+def drawn_figure(text: str, handout: Handout) -> Figure | None:
+    """Return what a student drew on the surface of a sheet, with the names of the questions; None where nothing can be shown."""
+    try:
+        return StudentDrawing.parse(text).figure({q.id: q.symbol for q in handout.questions if q.symbol})
+    except BadInput:
+        return None
 
 
 def surface(handout: Handout) -> DrawingSurface | None:

@@ -16,7 +16,7 @@ from coursework.database.decisions import decide
 from coursework.database.dump import dump, restore
 from coursework.database.marking import mark_new
 from coursework.database.store import Store
-from coursework.database.submissions import insert_submission
+from coursework.database.submissions import insert_submission, put_drawings
 from coursework.database.tables import METADATA
 from coursework.errors import BadInput
 from coursework.gradebook.decisions import Decision
@@ -53,7 +53,8 @@ def full(store, small_course):
         PlatformFile(ODD, "", True),
     ]
     with store.begin() as connection:
-        insert_submission(connection, number, odd, source=ODD, received_at=AT)
+        made = insert_submission(connection, number, odd, source=ODD, received_at=AT)
+        put_drawings(connection, made, {"four_bar_motion": '{"v": 1, "items": []}'})
         decide(connection, number, [Decision(BEN, "crank_pin", "", "x", "given", 1 / 3, ODD, ODD, "\\N")])
         person = {"person_id": 1}
         own = {

@@ -2,15 +2,21 @@
 
 import json
 import re
+from base64 import b64decode
 from dataclasses import replace
 from html import unescape
 
-from site_assignments import ASSIGNMENT, dealt
-from site_people import MAX, ZOE
+from site_assignments import ASSIGNMENT, USUAL, dealt
+from site_people import MAX, TEACHER, ZOE
 from site_practising import Practising
+from sqlalchemy import select
 
 from coursework.database.drafts import drafts
-from coursework.database.submissions import answers_of, submissions_of
+from coursework.database.erasing import erase
+from coursework.database.personal_data import identifiers_of, personal_data
+from coursework.database.publication import AT_ONCE
+from coursework.database.submissions import answers_of, drawings_of, submissions_of
+from coursework.database.tables import drawing
 from coursework.figures.student_drawing import MOST_CHARACTERS
 from coursework.issuing.assignment import AskedExercise
 
@@ -76,3 +82,74 @@ def test_a_paper_keeps_its_drawings_beside_what_is_handed_in(class_of_three):
         kept = drafts(connection, class_of_three.ids[ZOE], f"assignment/{number}")
     assert not any("drawing" in part or "alert" in text for *_, part, text in answers)
     assert kept["e2-drawing"].text == HOSTILE
+
+
+POLYGON = json.dumps(
+    {
+        "v": 1,
+        "items": [
+            {"k": "point", "id": 1, "x": 12.5, "y": 30, "n": "O2"},
+            {"k": "point", "id": 2, "x": 60, "y": 41},
+            {"k": "circle", "id": 3, "x": 60, "y": 41, "r": 20},
+            {"k": "vector", "id": 4, "from": 1, "to": 2},
+        ],
+        "scale": None,
+    }
+)
+
+
+def handed_in(site, text):
+    """An open question and two circles, handed in by Zoé with a drawing; the number of the assignment."""
+    number = dealt(site, publication=replace(USUAL, feedback=AT_ONCE), assignment=DRAWN)
+    browser = site.browser(ZOE)
+    browser.get(f"/assignments/{number}")
+    browser.fill(f"/assignments/{number}/keep", {"text.e2-drawing": text, "over.e2-drawing": "0"})
+    browser.fill(f"/assignments/{number}/hand-in", {"_number": "1", "e2-kl": "what is this"})
+    return number
+
+
+def drawn_curves(page):
+    """The outlines of the drawings on a page, without its other figures."""
+    return re.findall(r"<details[^>]*><summary>[^<]*(?:drawing|Your drawing).*?</details>", page, re.DOTALL)
+
+
+def test_staff_and_author_see_what_was_drawn_when_it_was_handed_in(class_of_three):
+    number = handed_in(class_of_three, POLYGON)
+    zoe, ada = class_of_three.browser(ZOE), class_of_three.browser(TEACHER)
+    # What is drawn afterwards is of a later attempt.
+    later = POLYGON.replace('"r": 20', '"r": 44')
+    zoe.fill(f"/assignments/{number}/keep", {"text.e2-drawing": later, "over.e2-drawing": "1"})
+    with class_of_three.site.store.reading() as connection:
+        assert drawings_of(connection, number, ZOE) == {(1, "two_circles"): POLYGON}
+        assert drawings_of(connection, number, MAX) == {}
+    pages = {
+        "queue": ada.get(f"/desk/{number}/queue?why=unreadable"),
+        "student": ada.get(f"/desk/{number}/student?name={ZOE}"),
+        "feedback": zoe.get(f"/assignments/{number}/feedback"),
+    }
+    pictures = {}
+    for name, reply in pages.items():
+        (found,) = drawn_curves(reply.text)
+        (picture,) = re.findall(r"data:image/svg\+xml;base64,([A-Za-z0-9+/=]+)", found)
+        pictures[name] = b64decode(picture)
+    assert len(set(pictures.values())) == 1
+    assert pictures["queue"].count(b"<circle") >= 1
+    assert drawn_curves(class_of_three.browser(MAX).get(f"/assignments/{number}").text) == []
+
+
+def test_a_drawing_that_is_none_is_shown_to_nobody_and_costs_no_answer(class_of_three):
+    number = handed_in(class_of_three, HOSTILE)
+    with class_of_three.site.store.reading() as connection:
+        assert drawings_of(connection, number, ZOE) == {}
+        assert len(submissions_of(connection, number, class_of_three.ids[ZOE])) == 1
+    assert "alert(1)" not in class_of_three.browser(TEACHER).get(f"/desk/{number}/student?name={ZOE}").text
+
+
+def test_a_drawing_is_among_the_data_of_a_person_and_goes_with_them(class_of_three):
+    handed_in(class_of_three, POLYGON)
+    store, zoe = class_of_three.site.store, class_of_three.ids[ZOE]
+    with store.begin() as connection:
+        (row,) = personal_data(connection, identifiers_of(connection, zoe))["drawing"]
+        assert row["text"] == POLYGON
+        assert erase(connection, zoe)["drawing"] == 1
+        assert connection.execute(select(drawing)).all() == []

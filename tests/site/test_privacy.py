@@ -166,7 +166,7 @@ NOBODYS = {
     "assignment.secret", "assignment.link", "job", "lti_nonce", "lti_course",
     "setting", "assignment.name", "assignment.published", "assignment.course", "variant.exercise", "variant.seed", "variant.letter", "variant.record",
     "delivery.digest", "delivery.receipt", "answer.exercise", "answer.seed", "answer.part", "answer.answer", "answer.lang",
-    "answer.student", "marking.student", "marking.exercise", "marking.seed", "marking.state", "marking.lang", "mark",
+    "answer.student", "drawing", "marking.student", "marking.exercise", "marking.seed", "marking.state", "marking.lang", "mark",
     "decision.student", "decision.exercise", "decision.seed", "decision.part", "decision.kind", "decision.answer", "worksheet.file",
     "placing.row", "audit.what", "audit.address", "dealt", "scanned.page", "scanned.student", "scanned.kept", "scanned.picture", "typed.student", "typed.exercise",
     "typed.seed", "typed.part", "typed.coordinate", "typed.answer", "typed.seen",

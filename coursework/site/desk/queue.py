@@ -19,6 +19,7 @@ from coursework.database.instructor_queries import (
 )
 from coursework.database.permissions import Permission
 from coursework.errors import BadInput
+from coursework.figures import Figure
 from coursework.gradebook.decisions import WITHDRAWN, Decision
 from coursework.gradebook.waiting import SHOWN_ON_REQUEST, WHY, AnswerGroup, AnswerToReview, written
 from coursework.language.numbers import localise, significant
@@ -30,6 +31,7 @@ from coursework.site.desk.question_cards import (
     raw_texts,
     requested_decision,
     steps,
+    submitted_drawing,
 )
 from coursework.site.frame.requests import Request, Route
 
@@ -117,6 +119,7 @@ class QueueCard:
     spellings: tuple[str, ...]
     steps: tuple[float, ...]
     elsewhere: int  #: answers to other questions with the same unreadable text
+    drawing: Figure | None  #: what the first student drew
 
     @property
     def is_open(self) -> bool:
@@ -136,12 +139,14 @@ def card_of(request: Request, now: ClassState, item: QueueItem) -> QueueCard:
     waits = now.open[group.id].members if group.id in now.open else ()
     decisions = [(entry, now.decisions.standing(entry.sheet, entry.mark)) for entry in group.members]
     first = (waits or group.members)[0]
+    question = question_card(now.course, now.issued, first.sheet, group.part, request.lang)
     margin = "" if first.margin is None else localise(significant(first.margin, 2), request.lang)
     return QueueCard(
-        item, question_card(now.course, now.issued, first.sheet, group.part, request.lang), first, waits,
+        item, question, first, waits,
         tuple((entry.student, decided_words(request, done, done.made)) for entry, done in decisions if done is not None and done.made), now.number(group.exercise, group.part), margin,
         raw_texts([entry.mark for entry in group.members]), steps(first.mark.out_of),
         sum(len(entry.members) for entry in _alike(now, group)),
+        submitted_drawing(request, now.about.id, first.sheet, question),
     )  # fmt: skip
 
 

@@ -23,6 +23,7 @@ from coursework.database.decisions import (
 from coursework.database.instructor_queries import people_of, practised, submissions_of_student
 from coursework.database.permissions import Permission
 from coursework.errors import BadInput
+from coursework.figures import Figure
 from coursework.gradebook.columns import own_columns
 from coursework.gradebook.decisions import Decision
 from coursework.gradebook.graded_sheet import Graded
@@ -39,6 +40,7 @@ from coursework.site.desk.question_cards import (
     requested_decision,
     sign_of,
     steps,
+    submitted_drawing,
 )
 from coursework.site.frame.requests import HTTPException, Request, Route
 
@@ -68,6 +70,7 @@ class StudentSheet:
     title: str
     lines: tuple[AnswerLine, ...]
     counts: bool
+    drawing: Figure | None  #: what the student drew
 
 
 @dataclass(frozen=True)
@@ -136,7 +139,9 @@ def _sheet(
         for part in machine.lines
     ]
     title = lines[0].question_card.handout.title if lines else machine.exercise
-    return StudentSheet(graded, title, tuple(lines), graded.sitting == now.results[graded.student].sitting)
+    drawn = submitted_drawing(request, now.about.id, machine, lines[0].question_card) if lines else None
+    counts = graded.sitting == now.results[graded.student].sitting
+    return StudentSheet(graded, title, tuple(lines), counts, drawn)
 
 
 def _line(

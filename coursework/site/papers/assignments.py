@@ -37,7 +37,7 @@ from coursework.site.papers.assignment_state import (
     state_and_paper,
     state_of,
 )
-from coursework.site.papers.feedback import charged_text, feedback_of
+from coursework.site.papers.feedback import charged_text, drawings_in, feedback_of
 from coursework.site.papers.opening import filled_in, make_pieces
 from coursework.site.papers.receipts import pending_marking
 from coursework.site.papers.student_paper import StudentPaper, counts, read_lines
@@ -344,6 +344,7 @@ def feedback(request: Request) -> Response:
         state=state,
         notes=notes,
         delivery=chosen,
+        drawings=drawings_in(request, state, paper, chosen),
         lessons={name: linked_lessons(request.site, name, request.lang) for name in paper.issued.exercises},
         **paper.template_names(document),
     )

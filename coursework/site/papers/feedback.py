@@ -8,12 +8,14 @@ from typing import Any
 from coursework.database.assignments import issued_content
 from coursework.database.current_marks import graded
 from coursework.database.marking import mark_submission
-from coursework.database.submissions import Submission
+from coursework.database.submissions import Submission, drawings_of
+from coursework.figures import Figure
 from coursework.gradebook.feedback_form import FeedbackForm, shows_solutions
 from coursework.gradebook.feedback_sheets import FeedbackOptions, feedback_paper
 from coursework.gradebook.scale import mark_of
 from coursework.issuing.issued import Issued
 from coursework.language.numbers import localise
+from coursework.rendering.surface import drawn_figure
 from coursework.rendering.views import points_number
 from coursework.sheets.paper import FeedbackPaper
 from coursework.site.frame.requests import Request
@@ -40,6 +42,21 @@ def feedback_of(
         request.site.course, issued, paper.student, sheets, request.lang, telling=telling
     )
     return document, _charged(request, state, issued, document, chosen)
+
+
+def drawings_in(
+    request: Request, state: AssignmentState, paper: StudentPaper, chosen: Submission
+) -> list[tuple[str, Figure]]:
+    """Return the student's drawings of a submission, each with the title of its exercise."""
+    if not paper.drawn:
+        return []
+    with request.site.store.reading() as connection:
+        texts = drawings_of(connection, state.assignment.id, paper.student)
+    drawn = (
+        (v.exercise.title(v.lang), drawn_figure(texts.get((chosen.number, v.exercise.name), ""), v.handout()))
+        for v in paper.variants
+    )
+    return [(title, figure) for title, figure in drawn if figure is not None]
 
 
 def _allowed(content: dict[str, Any], state: AssignmentState) -> dict[str, Any]:

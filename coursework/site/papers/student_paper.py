@@ -27,6 +27,7 @@ from coursework.model import Part
 from coursework.rendering import papers
 from coursework.rendering.environment import render
 from coursework.rendering.html import environment_of
+from coursework.rendering.surface import has_surface
 from coursework.selfstudy.attempt import read_back as readings
 from coursework.sheets.cells import answer_in, cell_names, form_of, is_incomplete
 from coursework.sheets.paper import FeedbackPaper, Paper, PaperHeading
@@ -155,6 +156,15 @@ class StudentPaper:
     def drawings(self) -> frozenset[str]:
         """Names of the boxes of drawings, one of each exercise."""
         return frozenset(f"e{index}-{DRAWING}" for index in range(1, len(self.seeds) + 1))
+
+    @cached_property
+    def drawn(self) -> Mapping[str, str]:
+        """Exercises with a surface to draw on, by the name of the box of the drawing."""
+        return {
+            f"e{index}-{DRAWING}": exercise
+            for index, (exercise, seed) in enumerate(self.seeds.items(), 1)
+            if has_surface(self.course[exercise].spec, self.issued.record_of(self.student, exercise, seed))
+        }
 
     @cached_property
     def boxes(self) -> dict[str, PaperBox]:

@@ -38,10 +38,12 @@ from coursework.database.submissions import (
     attempts_used,
     insert_submission,
     next_number,
+    put_drawings,
     submissions_of,
 )
 from coursework.database.tables import dealt, delivery, draft, person, variant
 from coursework.errors import CourseworkError
+from coursework.figures.student_drawing import is_drawn
 from coursework.gradebook.rows import AnswerRow, RowOrigin
 from coursework.site.frame.clock import is_steady
 from coursework.site.frame.requests import HTTPException
@@ -178,7 +180,7 @@ def _deliver(
     number = next_number(connection, assignment.id, person_id, paper.student)
     late = assignment.own_publication.late_seconds(received_at)
     rows = rows_for(paper, texts, number, received_at, source)
-    return insert_submission(
+    submission = insert_submission(
         connection,
         assignment.id,
         rows,
@@ -188,6 +190,11 @@ def _deliver(
         number=number,
         late=late,
     )
+    if submission.is_new and paper.drawn:
+        boxes = drafts(connection, person_id, sheet_of(assignment, paper))
+        texts = {exercise: boxes[name].text for name, exercise in paper.drawn.items() if name in boxes}
+        put_drawings(connection, submission, {name: text for name, text in texts.items() if is_drawn(text)})
+    return submission
 
 
 def mark(site: Site, delivery_id: int, *, at_once: bool = False) -> None:
