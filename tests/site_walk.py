@@ -239,11 +239,15 @@ def filled(path: str, places: dict) -> str:
     return re.sub(r"\{(\w+)(?::\w+)?\}", lambda found: places[found[1]], path)
 
 
+#: Places and sizes of what is drawn.
+_COORDINATES = re.compile(r' (?:d|points|transform|viewBox|[cr]?[xy][12]?|r|width|height)="[\w\s.,()+-]*"')
+
+
 def text_of(reply) -> str:
     """What a reply says, but for the coordinates of drawn lines, among which any number is by chance; of an archive, all that is in
     it, the cells of its tables apart as no decimal comma is."""
     if not zipfile.is_zipfile(io.BytesIO(reply.content)):
-        return re.sub(r' d="[MLHVCSQTAZmlhvcsqtaz\d\s.,+-]*"', "", reply.text)
+        return _COORDINATES.sub("", reply.text)
     with zipfile.ZipFile(io.BytesIO(reply.content)) as archive:
         texts = {name: archive.read(name).decode("utf-8", "replace") for name in archive.namelist()}
     return "\n".join(
