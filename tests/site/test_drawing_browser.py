@@ -530,6 +530,9 @@ def test_a_page_that_is_handed_out_draws_alone(desk, tmp_path):
     points = {"p": 80 + 45.5j, "a": 60 + 20j, "b": 30 + 25j}
     assert StudentDrawing.parse(page.input_value("[name=drawing]")).points == points
     assert [cells(page, name) for name in points] == [["80", "45,5"], ["60", "20"], ["30", "25"]]
+    for scheme in ("light", "dark"):
+        page.emulate_media(color_scheme=scheme)
+        assert (scheme, too_wide(page), serious(page)) == (scheme, 0, [])
     page.on("dialog", lambda dialog: dialog.accept())
     page.click("#wipe")
     assert page.locator(".surface .dot").count() == 0
