@@ -18,7 +18,7 @@ const beyond = (c, a, d) => ({ x: c.x + d * Math.cos(a * Math.PI / 180), y: c.y 
 const heading = (p, q) => Math.atan2(q.y - p.y, q.x - p.x) * 180 / Math.PI, far = (p, q) => Math.hypot(q.x - p.x, q.y - p.y);
 const along = (p, q, k) => ({ x: p.x + (q.x - p.x) * k, y: p.y + (q.y - p.y) * k }), half = (a) => a - 360 * Math.ceil((a - 180) / 360);
 const xy = (c) => ({ x: c.x, y: c.y });
-const numbers = (typed) => (typed.replace(/−/g, "-").match(/[-+]?\d+(?:[.,]\d+)?/gi) || []).map((one) => +one.replace(",", "."));
+const numbers = (typed) => (typed.replace(/−/g, "-").match(/[-+]?\d+(?:[.,]\d+)?/g) || []).map((one) => +one.replace(",", "."));
 const print = (value, digits = 2) => String(tidy(value, digits)).replace(".", data.lang === "fr" ? "," : ".");
 const near = (c, all, reach) => all.reduce((best, one) => (far(one, c) < (best ? far(best, c) : reach) ? one : best), null);
 const find = (id) => items.find((one) => one.id === id), of = (...kinds) => items.filter((one) => kinds.includes(one.k));
@@ -93,7 +93,7 @@ function snap(c, but) {
 }
 function hit(c) {
   const it = close(c, isGraph ? 6 : 22 * unit()), joint = isGraph && !it && near(c, of("joint").map((one) => ({ ...middle(one), one })), 7);
-  return it ? it.point || it.on || null : joint ? joint.one : null;
+  return it ? it.point || it.on : joint && joint.one;
 }
 
 // --- changing
@@ -133,7 +133,7 @@ function load() {
   show();
 }
 
-// --- boxes: of components, the line that they make
+// --- boxes: of components, the line of cells.js
 const box = (name) => document.querySelector(`[name="${data.own + name}"]`);
 function send(to, value) {
   if (!to || to.value === value) return;
@@ -169,7 +169,7 @@ function take(only) {
   for (const n of names) {
     const now = read(n), one = named(n);
     if (only && only !== n) continue;
-    if (!now && one && only) delete one.n;
+    if (one && only && !box(n).value) delete one.n;
     if (!now || (one && String(value(one)) === String(now.map((part) => tidy(part, 2))))) continue;
     cuts = null;
     if (!isArrow(n)) { if (one) [one.x, one.y] = now; else put({ k: "point", x: now[0], y: now[1], n }); continue; }
@@ -453,14 +453,19 @@ function takeGraph() {
 }
 
 // --- begins
-on(document, "input", (e) => {
-  const name = e.target.name || "", n = name.slice(data.own.length).replace(/-[12]$/, ""), before = state();
-  if (busy || !name.startsWith(data.own) || ![...names, ...data.scales, data.box].includes(n)) return;
-  if (!data.scales.includes(n)) take(n); else if (scaled().scale === n) entry("scale").value = e.target.value;
+function hear(name) {
+  const n = [...names, ...data.scales, data.box].find((one) => data.own + one === name), before = state();
+  if (busy || !n) return;
+  if (!data.scales.includes(n)) take(n); else if (scaled().scale === n) entry("scale").value = box(n).value;
   if (before !== state()) remember(before);
   keep(true);
+}
+on(document, "input", (e) => hear(e.target.name));
+on(document, "kept:changed answers:filled", ({ target, detail }) => {
+  if (busy) return;
+  if (field.value !== text) load();
+  else if (detail) queueMicrotask(() => hear((target.dataset.keepOwn || "") + detail.name));
 });
-on(document, "kept:changed answers:filled", () => { if (!busy && field.value !== text) load(); });
 const paper = place.previousElementSibling;
 place.hidden = false;
 if (paper && paper.matches(".paper")) {

@@ -1,4 +1,5 @@
-"""Boxes of components in Chromium: they and the line follow each other, what is pasted is spread, without a script they are joined."""
+"""Boxes of components in Chromium: they and the line follow each other, what is pasted is spread, without a script they are joined,
+and a screen reader tells them apart."""
 
 import pytest
 from site_browser import chromium, context_of, served, told
@@ -61,3 +62,22 @@ def test_without_a_script_the_boxes_are_joined_and_filled_again(window):
     page.click(f"#below-{PART} button[name=check]")
     assert "blank" in page.inner_text(f"#read-{PART}")
     assert cells(page) == ["1,5", "", "-3"]
+
+
+@pytest.mark.parametrize(("exercise", "lang"), [("joint_twist", "en"), ("velocity_polygon", "fr")])
+def test_in_the_tree_for_screen_readers_each_box_and_button_has_a_name_of_its_own(window, exercise, lang):
+    """In Chromium's own tree, where a formula in a label is no name."""
+    page = window(ZOE, lang=lang)
+    page.goto(page.url.replace("/joint_twist/", f"/{exercise}/"))
+    tree = page.context.new_cdp_session(page).send("Accessibility.getFullAXTree")["nodes"]
+    named = {}
+    for node in tree:
+        if not node["ignored"]:
+            named.setdefault(node["role"]["value"], []).append(node.get("name", {}).get("value", "").strip())
+    for role in ("textbox", "button"):
+        assert all(named[role])
+        assert len(set(named[role])) == len(named[role]), named[role]
+    groups = page.locator(".cells").evaluate_all("all => all.map((one) => one.getAttribute('aria-label'))")
+    assert set(groups) <= set(named["group"])
+    assert len(named["MathMLMath"]) > 50
+    assert all(len(name.split()) >= 8 for name in named["image"])

@@ -347,20 +347,80 @@ def test_a_joint_graph_is_tapped_together(pencil):
         hand.close()
 
 
+def cells(page, name):
+    """What stands in the boxes of the components of a part."""
+    return [page.input_value(f"[name={name}-{index}]") for index in (1, 2)]
+
+
+def type_cells(page, name, *texts):
+    """Type components as a student does, key by key over what stands there."""
+    for index, text in enumerate(texts, 1):
+        page.click(f"[name={name}-{index}]", click_count=3)
+        page.keyboard.press("Delete")
+        page.keyboard.type(text)
+
+
+def type_line(page, name, text):
+    """Type a whole answer into the line below the boxes of its components."""
+    page.locator(f"details:has([name={name}]) summary").click()
+    page.fill(f"[name={name}]", text)
+
+
+def draw_at(page, name, z):
+    """Draw the point of a part with the mouse."""
+    page.evaluate("document.querySelector('[data-tool=point]').click()")
+    svg = page.locator("[data-surface]").first
+    svg.scroll_into_view_if_needed()
+    room, view = svg.bounding_box(), [float(one) for one in svg.get_attribute("viewBox").split()]
+    x, y = (z.real - view[0]) * room["width"] / view[2], (-z.imag - view[1]) * room["height"] / view[3]
+    svg.click(position={"x": x, "y": y})
+    page.evaluate("n => document.querySelector(`[data-name='${n}']`).click()", name.split("-")[-1])
+
+
+def drawn_items(page, name):
+    return json.loads(page.input_value(f"[name={name}]"))["items"]
+
+
 def test_what_is_drawn_is_kept_and_what_is_typed_is_drawn(desk, pencil):
     hand = pencil("two_circles")
     hand.dot(30 + 20j, "p")
-    hand.page.fill("[name=a-a]", "(50,5; 40)")
+    assert cells(hand.page, "a-p") == ["30", "20"]
+    type_cells(hand.page, "a-a", "50,5", "40")
     assert StudentDrawing.parse(hand.text()).points == {"p": 30 + 20j, "a": 50.5 + 40j}
+    type_cells(hand.page, "a-p", "31.5")  # moves the point, and makes no other
+    assert [one["k"] for one in drawn_items(hand.page, "a-drawing")] == ["point", "point"]
+    assert hand.page.input_value("[name=a-p]") == "(31.5 ; 20)"
+    type_line(hand.page, "a-c", "(60 ; 10)")
+    points = {"p": 31.5 + 20j, "a": 50.5 + 40j, "c": 60 + 10j}
+    assert StudentDrawing.parse(hand.text()).points == points
     told(hand.page, "is kept|Saved")
     hand.page.reload()
-    assert StudentDrawing.parse(hand.text()).points == {"p": 30 + 20j, "a": 50.5 + 40j}
+    assert StudentDrawing.parse(hand.text()).points == points
+    assert cells(hand.page, "a-a") == ["50,5", "40"]
     hand.tool("delete")
-    hand.tap(30 + 20j)
-    assert hand.page.input_value("[name=a-p]") == ""
+    hand.tap(31.5 + 20j)
+    assert (hand.page.input_value("[name=a-p]"), cells(hand.page, "a-p")) == ("", ["", ""])
     hand.tool("undo")
-    assert hand.page.input_value("[name=a-p]") == "(30 ; 20)"
+    assert (hand.page.input_value("[name=a-p]"), cells(hand.page, "a-p")) == ("(31.5 ; 20)", ["31.5", "20"])
     hand.close()
+
+
+def test_what_another_page_wrote_is_drawn_once_it_is_taken(pencil):
+    hand = pencil("two_circles")
+    one, other = hand.page, hand.context.new_page()
+    other.goto(one.url)
+    hand.context.set_offline(True)
+    for page, text in ((one, "20"), (other, "40")):
+        type_cells(page, "a-p", text, "30")
+        told(page, "No connection")
+    one.close()
+    hand.context.set_offline(False)
+    other.reload()
+    drawing, point = ("[data-other=a-drawing]", "[data-other=a-p]")
+    other.locator(f"{drawing} >> text=Keep mine").click()
+    other.locator(f"{point} >> text=Take that").click()
+    assert (cells(other, "a-p"), other.input_value("[name=a-p]")) == (["20", "30"], "(20 ; 30)")
+    assert [(one["x"], one["y"]) for one in drawn_items(other, "a-drawing")] == [(20, 30)]
 
 
 def test_two_fingers_zoom_so_that_a_tenth_of_a_millimetre_is_placed(pencil):
@@ -434,16 +494,22 @@ def test_a_paper_has_a_surface_for_each_exercise_that_is_drawn(desk):
     for _ in range(2):
         page.goto(f"{address}/assignments/{number}")
         page.wait_for_selector("[data-surface=graph]")
-    page.fill("[name=e1-a]", "(20; 30)")
+    type_cells(page, "e1-a", "20", "30")
+    type_line(page, "e1-b", "(70; 12,5)")
     page.fill("[name=e3-graph]", "1-2 R; 2-3 contact, 3-4-1 pivot")
-    kinds = [json.loads(page.input_value(f"[name=e{k}-drawing]"))["items"] for k in (1, 3)]
-    assert [one["k"] for one in kinds[0]] == ["point"]
+    kinds = [drawn_items(page, f"e{k}-drawing") for k in (1, 3)]
+    points = {"a": 20 + 30j, "b": 70 + 12.5j}
+    assert StudentDrawing.parse(page.input_value("[name=e1-drawing]")).points == points
     assert [one["k"] for one in kinds[1]] == ["body"] * 4 + ["joint"] * 3
     assert [one.get("t") for one in kinds[1]][4:] == ["revolute", "higher", "revolute"]
     assert page.input_value("[name=e3-graph]") == "1-2 R; 2-3 contact, 3-4-1 pivot"  # what is typed stays
     told(page, "is kept|Saved")
     page.reload()
-    assert len(json.loads(page.input_value("[name=e3-drawing]"))["items"]) == 7
+    assert len(drawn_items(page, "e3-drawing")) == 7
+    assert StudentDrawing.parse(page.input_value("[name=e1-drawing]")).points == points
+    assert (cells(page, "e1-a"), cells(page, "e1-b")) == (["20", "30"], ["70", "12,5"])
+    draw_at(page, "e1-p", 90 + 40j)
+    assert cells(page, "e1-p") == ["90", "40"]
     assert faults == []
     context.close()
 
@@ -457,12 +523,20 @@ def test_a_page_that_is_handed_out_draws_alone(desk, tmp_path):
     page = context.new_page()
     faults = watched(page)
     page.goto(f"file://{tmp_path}/page.html")
-    page.fill("[name=p]", "(80 ; 45,5)")
+    type_cells(page, "p", "80", "45,5")
+    type_line(page, "a", "(60 ; 20)")
+    draw_at(page, "b", 30 + 25j)
     page.reload()
-    assert StudentDrawing.parse(page.input_value("[name=drawing]")).points == {"p": 80 + 45.5j}
+    points = {"p": 80 + 45.5j, "a": 60 + 20j, "b": 30 + 25j}
+    assert StudentDrawing.parse(page.input_value("[name=drawing]")).points == points
+    assert [cells(page, name) for name in points] == [["80", "45,5"], ["60", "20"], ["30", "25"]]
+    for scheme in ("light", "dark"):
+        page.emulate_media(color_scheme=scheme)
+        assert (scheme, too_wide(page), serious(page)) == (scheme, 0, [])
     page.on("dialog", lambda dialog: dialog.accept())
     page.click("#wipe")
     assert page.locator(".surface .dot").count() == 0
+    assert [cells(page, name) for name in points] == [["", ""]] * 3
     assert faults == []
     context.close()
 
