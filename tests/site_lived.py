@@ -91,6 +91,7 @@ def shown(site: Lived) -> list[Shown]:
     students = (
         ("/practice", "/practice"),
         ("/lessons/{lesson}", "/lessons/plane_mechanisms"),
+        ("/explore/{exercise}", f"/explore/{EXERCISE}"),
         (practice, sheet),
         (f"{practice}/solution", f"{sheet}/solution"),
         (f"{practice}/motion", f"{sheet}/motion"),

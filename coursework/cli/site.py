@@ -35,7 +35,7 @@ if TYPE_CHECKING:
     from coursework.site.frame.settings import Entrance
 
 _LIBRARIES = (
-    "argon2", "itsdangerous", "limits", "psycopg", "python_multipart", "sqlalchemy", "starlette", "uvicorn",
+    "argon2", "itsdangerous", "psycopg", "python_multipart", "sqlalchemy", "starlette", "uvicorn",
 )  # fmt: skip
 _LOOPBACK = "127.0.0.1"
 

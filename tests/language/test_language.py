@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import codecs
+import re
 import shutil
+from pathlib import Path
 
 import pytest
 from tables import each_row
@@ -94,3 +96,16 @@ def test_words_kept_from_an_earlier_run_give_way_to_a_changed_file(spanish, monk
         assert title() == first
     spanish.write_text(spanish.read_text("utf-8").replace(f'"{first}"', '"Datos"'), "utf-8")
     assert title() == "Datos"
+
+
+def test_no_template_prints_a_method_of_the_words():
+    """``words.sheet.keys`` is a method of the table, not its entry: ``words.sheet["keys"]``."""
+    method = re.compile(
+        r"\b(?:words|said\w*)(?:\.\w+)*\.(?:clear|copy|get|items|keys|pop|update|values)\b(?!\()"
+    )
+    found = {
+        file.name: names
+        for file in (Path(__file__).parents[2] / "templates").rglob("*.j2")
+        if (names := method.findall(file.read_text("utf-8")))
+    }
+    assert found == {}

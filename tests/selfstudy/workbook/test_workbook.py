@@ -539,7 +539,7 @@ def test_pages_fit_a_telephone_and_print_what_is_folded(small):
     narrow = re.search(
         r"@media \(max-width: 40rem\) \{(.*?\})\s*\}", found["pages/crank_pin.html"].decode(), re.DOTALL
     )
-    assert re.search(r"fieldset\[class\] \{ grid-template-columns: 1fr; \}", narrow[1])
+    assert re.search(r"fieldset\[class\] \{ grid-template-columns: minmax\(0, 1fr\); \}", narrow[1])
     printed = re.search(
         r"@media print \{\s*nav\.book(.*?\})\s*\}", found["pages/rods.html"].decode(), re.DOTALL
     )
