@@ -425,7 +425,7 @@ function show() {
   };
   for (const [selector, is] of Object.entries(pressed_)) every(`[data-${selector}`).forEach((one) => one.setAttribute("aria-pressed", is(one.dataset)));
   every("[data-for]").forEach((one) => { one.hidden = !one.dataset.for.split(" ").includes(tool); });
-  every("[data-name]").forEach((one) => one.classList.toggle("given", !!named(one.dataset.name)));
+  every("[data-name]").forEach((one) => one.classList.toggle("placed", !!named(one.dataset.name)));
   every("[data-put]").forEach((one) => { one.hidden = measured(one.dataset.unit) == null; });
   get("[data-tool=undo]").disabled = !past.length; get("[data-tool=redo]").disabled = !next.length;
   if (isGraph) { entry("body").closest("label").hidden = !item || item.k !== "body"; if (item && item.n) entry("body").value = item.n; }

@@ -385,6 +385,7 @@ def test_what_is_drawn_is_kept_and_what_is_typed_is_drawn(desk, pencil):
     hand = pencil("two_circles")
     hand.dot(30 + 20j, "p")
     assert cells(hand.page, "a-p") == ["30", "20"]
+    assert hand.page.locator("[data-name=p] math").bounding_box()["width"] > 5  # beside its tick
     type_cells(hand.page, "a-a", "50,5", "40")
     assert StudentDrawing.parse(hand.text()).points == {"p": 30 + 20j, "a": 50.5 + 40j}
     type_cells(hand.page, "a-p", "31.5")  # moves the point, and makes no other
