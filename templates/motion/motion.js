@@ -1,6 +1,8 @@
 (function () {
   "use strict";
-  const data = JSON.parse(document.getElementById("motion-data").textContent);
+  const stated = document.getElementById("motion-data");
+  if (!stated) return; // questions come first that the motion answers
+  const data = JSON.parse(stated.textContent);
   const all = (selector) => Array.from(document.querySelectorAll(selector));
   const slider = document.getElementById("angle"), play = document.getElementById("play");
   const things = all("[data-track]").map((node) => [node, data.tracks[+node.dataset.track]]);
