@@ -44,7 +44,7 @@ class Device:
         else:
             page = self.page(f"{self.home}/practice/{next(_EXERCISES)}")
             self.place, self.own = page.url, "a-"
-            names = page.locator("input[type=text]").evaluate_all(
+            names = page.locator("input[type=text][name^=a-]:not([data-cell], [data-form])").evaluate_all(
                 "all => all.map((box) => box.name.slice(2))"
             )
             self.boxes = list(dict.fromkeys(names))[:2]
