@@ -134,7 +134,7 @@ def test_a_paper_waits_as_it_was_left_and_gives_a_receipt_and_feedback(room, win
 
 def test_an_hour_without_a_line_loses_nothing(room, window):
     page = window(ZOE, "/practice/two_circles", has_line=False)
-    box = page.locator("input[type=text]").first
+    box = page.locator("input[type=text][name]:visible").first
     page.context.set_offline(True)
     box.fill("1.5 mm")
     page.wait_for_selector("#state >> text=No connection")
@@ -143,7 +143,7 @@ def test_an_hour_without_a_line_loses_nothing(room, window):
     page.context.set_offline(False)
     page.wait_for_selector(SAVED)
     page.reload()
-    assert page.locator("input[type=text]").first.input_value() == "12.5 mm"
+    assert page.locator("input[type=text][name]:visible").first.input_value() == "12.5 mm"
 
 
 # ------------------------------------------------------------------- coming in

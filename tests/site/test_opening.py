@@ -73,7 +73,7 @@ def paper_of(one, number, name, lang):
 def texts_of(page):
     """Something typed in each box of a page, or ticked."""
     texts = {}
-    for name in dict.fromkeys(re.findall(r'name="(e\d+-[^"]+)"(?! data-cell)', page)):
+    for name in dict.fromkeys(re.findall(r'name="(e\d+-[^"]+)"(?![^>]* data-cell)', page)):
         ticks = re.findall(rf'<input type="(radio|checkbox)" name="{re.escape(name)}" value="([^"]*)"', page)
         values = [value for _, value in ticks[: 2 if ticks and ticks[0][0] == "checkbox" else 1]]
         texts[name] = ", ".join(values) if ticks else f"1 < 2 & \"{name}\" = 'é'\n</textarea>"

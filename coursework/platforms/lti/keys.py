@@ -101,12 +101,14 @@ class KeyFolder:
 
     def new(self) -> SigningKey:
         """Create a key, which signs from now on; earlier keys stay public."""
-        private = rsa.generate_private_key(public_exponent=65537, key_size=_BITS)
+        kid = "-"
+        while kid.startswith("-"):  # a command would take such a name for an option
+            private = rsa.generate_private_key(public_exponent=65537, key_size=_BITS)
+            kid = _thumbprint(_jwk(private))
         pem = private.private_bytes(
             serialization.Encoding.PEM, serialization.PrivateFormat.PKCS8, serialization.NoEncryption()
         )
         at = time.strftime("%Y%m%dT%H%M%SZ", time.gmtime(max(self._clock(), self._after_the_last())))
-        kid = _thumbprint(_jwk(private))
         path = self.folder / f"{at}-{kid}.pem"
         self._write(path, pem)
         return SigningKey(kid, at, path)
