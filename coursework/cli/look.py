@@ -115,11 +115,11 @@ def _drawn(
 ) -> list[Any]:
     """Return variants that ask the parts named, with the values that are given."""
     values = settings_given(given, "--given")
-    if values and exercise.draws.is_whole(values):
+    variants = exercise.variants(seeds, lang, split_list(parts) or None, given=values)
+    if exercise.draws.is_whole(values):
         from coursework.issuing.issuing import reservations
 
-        print_notes(reservations(exercise, exercise.variant(0, lang, given=values)))
-    variants = exercise.variants(seeds, lang, split_list(parts) or None, given=values)
+        print_notes(reservations(exercise, variants[0]))
     for item in variants:
         if not item.parts:
             raise WrongValue(

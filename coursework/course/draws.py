@@ -52,11 +52,6 @@ def _evaluate(bound: Bound | None, drawn: Mapping[str, np.ndarray]) -> Any:
     return bound(*[drawn[n] for n in inspect.signature(bound).parameters])
 
 
-def _plain_value(value: float | str | None) -> float | str:
-    assert value is not None  # stated, or fixed
-    return value if isinstance(value, str) else float(value)
-
-
 def _constant(spec: GivenSpec) -> float:
     """Return the one value of a quantity that is fixed."""
     assert spec.default is not None
@@ -268,8 +263,8 @@ class Draws:
         return drawn
 
     def is_whole(self, stated: Stated) -> bool:
-        """Return whether nothing is left to draw beside the stated values."""
-        return all(name in stated or spec.is_fixed for name, spec in self.spec.given.items())
+        """Return whether values are stated, and nothing is left to draw beside them."""
+        return bool(stated) and all(name in stated or spec.is_fixed for name, spec in self.spec.given.items())
 
     def refusing(self, given: Mapping[str, float | str]) -> tuple[str, ...]:
         """Return the names of the constraints that given values do not meet."""
@@ -293,9 +288,8 @@ class Draws:
             Some seed finds no variant in its bounded draws; the message names the constraint that refuses most.
         """
         if self.is_whole(stated):
-            return [{n: _plain_value(stated.get(n, s.default)) for n, s in self.spec.given.items()}] * len(
-                seeds
-            )
+            specs = self.spec.given.items()
+            return [{n: stated[n] if n in stated else _constant(s) for n, s in specs} for _ in seeds]
         draws: list[dict[str, float | str] | None] = [None] * len(seeds)
         pending = np.arange(len(seeds))
         for block in range(MAX_BLOCKS):

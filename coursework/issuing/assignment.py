@@ -66,7 +66,7 @@ class AskedExercise:
 
     def fixed_seed(self, exercise: CourseExercise[Any]) -> int | None:
         """Return the seed of the variant that everybody gets; None if each has another one."""
-        if self.seed is None and self.given and exercise.draws.is_whole(self.given):
+        if self.seed is None and exercise.draws.is_whole(self.given):
             return 0
         return self.seed
 

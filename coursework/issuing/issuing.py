@@ -300,7 +300,7 @@ def issue(
         check_languages(exercise, *whose_languages(students))
         variants: list[Any]
         stated, some = values[name], asked_parts[name]
-        if stated and exercise.draws.is_whole(stated):
+        if exercise.draws.is_whole(stated):
             variants = [exercise.variant(first_seed, langs[0], some, given=stated)] * (len(roster) or 1)
             for text in reservations(exercise, variants[0]):
                 note(text)

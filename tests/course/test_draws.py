@@ -115,6 +115,14 @@ def test_starving_names_the_constraint_that_refuses():
         Draws("test", exercise).draw([3])
 
 
+def test_a_constraint_refuses_what_is_fixed_as_well():
+    """Only values that somebody states stand against the constraints."""
+    exercise = exercise_of({"x": fixed(9)}, constraints=(never,))
+    with pytest.raises(Starved, match=r"refused by never \(4096 times\)"):
+        Draws("test", exercise).draw([3])
+    assert Draws("test", exercise).draw([3], stated={"x": 9.0}) == [{"x": 9.0}]
+
+
 def test_an_empty_range_is_named():
     given = {"x": ranged(1, 9), "y": ranged(lambda x: x + 10, 9), "z": ranged(lambda y: y, 9)}
     with pytest.raises(Starved, match=r"refused by range of y is empty \(4096 times\); widen"):
