@@ -96,10 +96,22 @@ def has_surface(exercise: Exercise, record: Mapping[str, Any]) -> bool:
     return bool(is_paper) or any(part["kind"] in _GRAPHS for part in record["parts"])
 
 
-def drawn_figure(text: str, handout: Handout) -> Figure | None:
-    """Return what a student drew on the surface of a sheet, with the names of the questions; None where nothing can be shown."""
+def drawn_figure(texts: Mapping[tuple[int, str], str], attempt: int, handout: Handout) -> Figure | None:
+    """Return what a student drew on the surface of a sheet, with the names of the questions; None where nothing can be shown.
+
+    Parameters
+    ----------
+    texts
+        Drawings of the student by attempt and exercise.
+    attempt
+        Number of the attempt.
+    handout
+        The sheet.
+    """
     try:
-        return StudentDrawing.parse(text).figure({q.id: q.symbol for q in handout.questions if q.symbol})
+        return StudentDrawing.parse(texts.get((attempt, handout.exercise), "")).figure(
+            {q.id: q.symbol for q in handout.questions if q.symbol}
+        )
     except BadInput:
         return None
 

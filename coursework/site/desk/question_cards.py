@@ -14,9 +14,7 @@ from coursework.course.course import Course
 from coursework.course.key_batch import keys_of
 from coursework.course.marking_rules import Rules
 from coursework.course.variant import Variant
-from coursework.database.submissions import drawings_of
 from coursework.errors import BadInput, CourseworkError
-from coursework.figures import Figure
 from coursework.gradebook.class_marking import rules_of
 from coursework.gradebook.decisions import ACCEPTED, GIVEN, KEPT, WITHDRAWN, points_of
 from coursework.gradebook.graded_sheet import Graded
@@ -25,7 +23,6 @@ from coursework.language.numbers import localise, significant, unit_text
 from coursework.language.words import quoted
 from coursework.marking.mark import Mark
 from coursework.model import Part
-from coursework.rendering.surface import drawn_figure, has_surface
 from coursework.sheets.answer_sheet import answer_text
 from coursework.sheets.handout import handout
 from coursework.sheets.sheet import Handout, Question
@@ -117,17 +114,6 @@ def _variant(of: _Hashed) -> Variant:
 def _question_card(of: _Hashed, part: str) -> QuestionCard:
     variant = _variant(of)
     return QuestionCard(variant, next(p for p in variant.parts if p.id == part))
-
-
-def submitted_drawing(
-    request: Request, assignment_id: int, graded: Graded, card: QuestionCard
-) -> Figure | None:
-    """Return what the student drew on the surface of a sheet; None without a drawing."""
-    if not has_surface(card.variant.exercise.spec, graded.record):
-        return None
-    with request.site.store.reading() as connection:
-        texts = drawings_of(connection, assignment_id, graded.student)
-    return drawn_figure(texts.get((graded.sitting, graded.exercise), ""), card.handout)
 
 
 def steps(out_of: float) -> tuple[float, ...]:

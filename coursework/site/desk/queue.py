@@ -18,11 +18,14 @@ from coursework.database.instructor_queries import (
     undoable,
 )
 from coursework.database.permissions import Permission
+from coursework.database.submissions import drawings_of
 from coursework.errors import BadInput
 from coursework.figures import Figure
 from coursework.gradebook.decisions import WITHDRAWN, Decision
+from coursework.gradebook.graded_sheet import Graded
 from coursework.gradebook.waiting import SHOWN_ON_REQUEST, WHY, AnswerGroup, AnswerToReview, written
 from coursework.language.numbers import localise, significant
+from coursework.rendering.surface import drawn_figure, has_surface
 from coursework.site.desk.class_cache import class_here, class_now, class_page_of
 from coursework.site.desk.question_cards import (
     QuestionCard,
@@ -31,7 +34,6 @@ from coursework.site.desk.question_cards import (
     raw_texts,
     requested_decision,
     steps,
-    submitted_drawing,
 )
 from coursework.site.frame.requests import Request, Route
 
@@ -146,8 +148,17 @@ def card_of(request: Request, now: ClassState, item: QueueItem) -> QueueCard:
         tuple((entry.student, decided_words(request, done, done.made)) for entry, done in decisions if done is not None and done.made), now.number(group.exercise, group.part), margin,
         raw_texts([entry.mark for entry in group.members]), steps(first.mark.out_of),
         sum(len(entry.members) for entry in _alike(now, group)),
-        submitted_drawing(request, now.about.id, first.sheet, question),
+        _drawing(request, now.about.id, first.sheet, question),
     )  # fmt: skip
+
+
+def _drawing(request: Request, assignment_id: int, graded: Graded, card: QuestionCard) -> Figure | None:
+    """Return what the student drew on the surface of a sheet; None without a drawing."""
+    if not has_surface(card.variant.exercise.spec, graded.record):
+        return None
+    with request.site.store.reading() as connection:
+        texts = drawings_of(connection, assignment_id, graded.student)
+    return drawn_figure(texts, graded.sitting, card.handout)
 
 
 def _alike(now: ClassState, group: AnswerGroup) -> list[OpenGroup]:

@@ -7,6 +7,7 @@ assignment; never an answer, a mark or a mistake, since practice is private.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from datetime import datetime
 from itertools import groupby
@@ -22,6 +23,7 @@ from coursework.database.decisions import (
 )
 from coursework.database.instructor_queries import people_of, practised, submissions_of_student
 from coursework.database.permissions import Permission
+from coursework.database.submissions import drawings_of
 from coursework.errors import BadInput
 from coursework.figures import Figure
 from coursework.gradebook.columns import own_columns
@@ -31,6 +33,7 @@ from coursework.gradebook.scale import mark_of
 from coursework.issuing.students import folded
 from coursework.language.numbers import localise
 from coursework.marking.mark import Mark
+from coursework.rendering.surface import drawn_figure
 from coursework.site.desk.class_cache import class_here, class_now, class_page_of
 from coursework.site.desk.question_cards import (
     QuestionCard,
@@ -40,7 +43,6 @@ from coursework.site.desk.question_cards import (
     requested_decision,
     sign_of,
     steps,
-    submitted_drawing,
 )
 from coursework.site.frame.requests import HTTPException, Request, Route
 
@@ -99,10 +101,11 @@ def student_page(request: Request) -> Response:
         tries = submissions_of_student(connection, now.about.id, student)
         person = people_of(connection, now.about.id).get(student)
         alone = practised(connection, person, now.issued.exercises) if person else {}
+        drawn = drawings_of(connection, now.about.id, student)
     by_place: dict[tuple[str, str], list[HistoryEvent]] = {}
     for event in happened:
         by_place.setdefault((event.exercise, event.part), []).append(event)
-    sheets = [_sheet(request, now, sheet, by_place) for sheet in now.machine if sheet[0] == student]
+    sheets = [_sheet(request, now, sheet, by_place, drawn) for sheet in now.machine if sheet[0] == student]
     sheets.sort(key=lambda entry: (-entry.graded.sitting, now.issued.exercises.index(entry.graded.exercise)))
     return class_page_of(
         request, now, "site/instructor/student", "class", student=student, result=result, told=message,
@@ -131,7 +134,11 @@ def _columns(now: ClassState, student: str) -> list[tuple[str, str]]:
 
 
 def _sheet(
-    request: Request, now: ClassState, sheet_key: Any, happened: dict[tuple[str, str], list[HistoryEvent]]
+    request: Request,
+    now: ClassState,
+    sheet_key: Any,
+    happened: dict[tuple[str, str], list[HistoryEvent]],
+    drawn: Mapping[tuple[int, str], str],
 ) -> StudentSheet:
     machine, graded = now.machine[sheet_key], now.graded[sheet_key]
     lines = [
@@ -139,9 +146,9 @@ def _sheet(
         for part in machine.lines
     ]
     title = lines[0].question_card.handout.title if lines else machine.exercise
-    drawn = submitted_drawing(request, now.about.id, machine, lines[0].question_card) if lines else None
+    figure = drawn_figure(drawn, machine.sitting, lines[0].question_card.handout) if lines else None
     counts = graded.sitting == now.results[graded.student].sitting
-    return StudentSheet(graded, title, tuple(lines), counts, drawn)
+    return StudentSheet(graded, title, tuple(lines), counts, figure)
 
 
 def _line(

@@ -96,11 +96,11 @@ def _paper_response(
         prepared = prepared_pieces(connection, number, person_id, paper.lang, paper.state)
     pieces = prepared or make_pieces(request.site, number, person_id, paper, stores=state.phase.takes)
     form = draft_attributes(request, f"{state.address}/keep", sheet, contents)
-    boxes_shown = {*paper.fields, *paper.drawings}
+    boxes_shown = {*paper.fields, *paper.drawn}
     texts = {name: box.text for name, box in contents.items() if name in boxes_shown}
     return request.render(
         "site/student/assignment", status, state=state, form=form, versions=form["data-keep-versions"], problem=problem,
-        look="", back="", zone=zone_name(request.received_at), paper_head=Markup(pieces.head),
+        draws=bool(paper.drawn), look="", back="", zone=zone_name(request.received_at), paper_head=Markup(pieces.head),
         paper_body=Markup(filled_in(pieces.body, texts)),
     )  # fmt: skip
 
@@ -112,7 +112,7 @@ def save_draft(request: Request) -> Response:
     return save_drafts(
         request,
         sheet,
-        {*paper.fields, *paper.drawings},
+        {*paper.fields, *paper.drawn},
         lambda name, text: str(paper.read(name, text).html),
         state.may_hand_in,
     )

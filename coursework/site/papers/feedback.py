@@ -53,8 +53,7 @@ def drawings_in(
     with request.site.store.reading() as connection:
         texts = drawings_of(connection, state.assignment.id, paper.student)
     drawn = (
-        (v.exercise.title(v.lang), drawn_figure(texts.get((chosen.number, v.exercise.name), ""), v.handout()))
-        for v in paper.variants
+        (v.exercise.title(v.lang), drawn_figure(texts, chosen.number, v.handout())) for v in paper.variants
     )
     return [(title, figure) for title, figure in drawn if figure is not None]
 

@@ -153,11 +153,6 @@ class StudentPaper:
         return fields
 
     @cached_property
-    def drawings(self) -> frozenset[str]:
-        """Names of the boxes of drawings, one of each exercise."""
-        return frozenset(f"e{index}-{DRAWING}" for index in range(1, len(self.seeds) + 1))
-
-    @cached_property
     def drawn(self) -> Mapping[str, str]:
         """Exercises with a surface to draw on, by the name of the box of the drawing."""
         return {
@@ -206,7 +201,7 @@ class StudentPaper:
         others = [
             name
             for name in form.texts
-            if name not in {*self.fields, *self.drawings} and not name.startswith("_")
+            if name not in {*self.fields, *self.drawn} and not name.startswith("_")
         ]
         cells = [name for name in others if name.rpartition("-")[0] in self.fields]
         forms = dict.fromkeys(name.rpartition("-")[0] for name in cells)
@@ -221,7 +216,7 @@ class StudentPaper:
 
     def drawing_texts(self, form: FormData) -> dict[str, str]:
         """Return the drawings in a form of the page, by box; a longer text than a drawing may have is cut, and then is none."""
-        return {name: form.text(name)[: longest(name)] for name in self.drawings if name in form.texts}
+        return {name: form.text(name)[: longest(name)] for name in self.drawn if name in form.texts}
 
     def pieces(self) -> PreparedPieces:
         """Return the parts of its page, with empty boxes."""

@@ -22,7 +22,7 @@ from coursework.marking.answers import read
 from coursework.markup import markdown
 from coursework.rendering import views
 from coursework.rendering.feedback import verdict_word
-from coursework.rendering.surface import surface
+from coursework.rendering.surface import has_surface
 from coursework.selfstudy import hints, predictions
 from coursework.selfstudy.attempt import (
     CheckedAnswers,
@@ -154,7 +154,7 @@ class Worksheet:
     @cached_property
     def draws(self) -> bool:
         """True if the sheet has a drawing surface."""
-        return surface(handout(self.variant)) is not None
+        return has_surface(self.variant.exercise.spec, self.variant.record)
 
     @property
     def boxes(self) -> frozenset[str]:
