@@ -207,8 +207,7 @@ class Exploration:
     def ranges(self) -> list[tuple[float, float]]:
         """Ranges of the driver in which the mechanism closes, each from its first step to its last; one that passes 0
         degrees goes from the larger angle to the smaller."""
-        edges = np.flatnonzero(np.diff(np.concatenate([[False], self.closes, [False]]).astype(int)))
-        found = [(float(self.steps[a]), float(self.steps[b - 1])) for a, b in edges.reshape(-1, 2).tolist()]
+        found = [(float(self.steps[a]), float(self.steps[b - 1])) for a, b in _stretches(self.closes)]
         if len(found) > 1 and self.driver.jack is None and self.closes[0]:
             (_, end), *others, (start, _) = found
             return [*others, (start, end)]
@@ -296,7 +295,8 @@ class Exploration:
         """Return the plotted quantities with the driver where it is, by linear steps of a turn; NaN where they do not exist."""
         every = [curve for curves in self._curves.values() for curve in curves]
         place = float(np.interp(self.at, self.steps, np.arange(len(self.steps))))
-        k, share = min(int(place), len(self.steps) - 2), place - min(int(place), len(self.steps) - 2)
+        k = min(int(place), len(self.steps) - 2)
+        share = place - k
         return {
             c.name: float(
                 c.values[k] if share == 0 else c.values[k] + share * (c.values[k + 1] - c.values[k])
@@ -399,6 +399,10 @@ def _without_choices(elements: tuple[Element, ...]) -> tuple[Element, ...]:
 
 def _runs(way: np.ndarray) -> list[np.ndarray]:
     """Return the pieces of a path that exist."""
-    exists = np.concatenate([[False], np.isfinite(way), [False]])
-    edges = np.flatnonzero(np.diff(exists.astype(int))).reshape(-1, 2)
-    return [way[a:b] for a, b in edges.tolist() if b - a > 1]
+    return [way[a:b] for a, b in _stretches(np.isfinite(way)) if b - a > 1]
+
+
+def _stretches(holds: np.ndarray) -> list[tuple[int, int]]:
+    """Return where each stretch of True begins, and the place after its end."""
+    edges = np.flatnonzero(np.diff(np.concatenate([[False], holds, [False]]).astype(int)))
+    return [(a, b) for a, b in edges.reshape(-1, 2).tolist()]

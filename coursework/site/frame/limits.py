@@ -61,8 +61,8 @@ class Limits:
         return the seconds to wait."""
         if kind == FREE:
             return 0
-        if person or browser:
-            return self._of_persons[kind].take((person, browser if not person else ""))
+        if known := person or browser:
+            return self._of_persons[kind].take(known)
         return self._of_addresses[kind].take(network(address))
 
     def add_processor_time(self, kind: str, person: Hashable, seconds: float) -> None:

@@ -73,15 +73,12 @@ def address(variant: Any) -> str:
 
 def usual(variant: Any, choices: tuple[Parameter, ...]) -> dict[str, Any]:
     """Return the values of a variant, the driver's as well."""
-    given = variant.given
-    at = (
-        {choices[-1].name: variant.exercise.driver_angle(given) % 360.0}
-        if choices[-1].name not in given
-        else {}
-    )
-    values = {p.name: given.get(p.name, at.get(p.name)) for p in choices}
-    angle = choices[-1]
-    return values if angle.unit != "deg" else {**values, angle.name: values[angle.name] % 360.0}
+    values, driver = {p.name: variant.given.get(p.name) for p in choices}, choices[-1]
+    if driver.name not in variant.given:
+        values[driver.name] = variant.exercise.driver_angle(variant.given)
+    if driver.unit == "deg":
+        values[driver.name] %= 360.0
+    return values
 
 
 def _refuse_in_assignment(request: Request, name: str) -> None:
@@ -112,11 +109,16 @@ def shown_mechanism(
     exercise = typical.exercise
     symbol, unit = exercise.symbol(driver.name), unit_text(driver.unit, lang)
     axis = Axis(symbol, unit, found.steps[::_EVERY])
+
+    def symbol_of(name: str) -> str:
+        is_known = name in exercise.quantity_names
+        return str(exercise.solution_symbol(name) if is_known else said["torque"])
+
     plots = []
     for effect, rows in curves.items():
         panels = [
             Axis(
-                exercise.solution_symbol(c.name) if c.name in exercise.quantity_names else said["torque"],
+                symbol_of(c.name),
                 unit_text(c.unit, lang),
                 c.values[::_EVERY],
             )
@@ -137,7 +139,7 @@ def shown_mechanism(
             )
     numbers = [
         (
-            exercise.solution_symbol(c.name) if c.name in exercise.quantity_names else said["torque"],
+            symbol_of(c.name),
             unit_text(c.unit, lang),
             localise(significant(now[c.name], 4), lang),
         )
