@@ -9,6 +9,7 @@ from contextlib import contextmanager
 from urllib.parse import urlsplit
 
 import pytest
+from site_people import Class
 
 WIDTHS = {"telephone": (390, 844), "desk": (1280, 900)}
 
@@ -43,6 +44,32 @@ def served(class_, port=0):
     finally:
         server.should_exit = True
         thread.join(20)
+
+
+@contextmanager
+def windows(desk, name):
+    """Makes windows of somebody, each opened at an address; ``desk`` is a class, the address of its site, and a browser."""
+    class_, address, browser = desk
+    opened = []
+
+    def open_(place, **how):
+        context = context_of(browser, class_, address, how.pop("name", name), **how)
+        opened.append(context)
+        page = context.new_page()
+        page.goto(f"{address}{place}")
+        return page
+
+    yield open_
+    for context in opened:
+        context.close()
+
+
+@contextmanager
+def desk_at(folder):
+    """A class whose site stands behind a server, its address, and a browser."""
+    class_ = Class(f"sqlite:///{folder}/site.db")
+    with served(class_) as address, chromium() as browser:
+        yield class_, address, browser
 
 
 @contextmanager

@@ -2,8 +2,8 @@
 and a screen reader tells them apart."""
 
 import pytest
-from site_browser import chromium, context_of, served, told
-from site_people import MAX, ZOE, Class
+from site_browser import desk_at, told, windows
+from site_people import MAX, ZOE
 
 pytestmark = pytest.mark.e2e
 PART = "a-V_plane"
@@ -12,19 +12,8 @@ PART = "a-V_plane"
 @pytest.fixture(scope="module")
 def window(tmp_path_factory):
     """Open a practice page of joint_twist for somebody."""
-    class_ = Class(f"sqlite:///{tmp_path_factory.mktemp('site')}/site.db")
-    with served(class_) as address, chromium() as browser:
-        opened = []
-
-        def open_(name, **how):
-            opened.append(context_of(browser, class_, address, name, **how))
-            page = opened[-1].new_page()
-            page.goto(f"{address}/practice/joint_twist")
-            return page
-
-        yield open_
-        for context in opened:
-            context.close()
+    with desk_at(tmp_path_factory.mktemp("site")) as desk, windows(desk, ZOE) as open_:
+        yield lambda name, **how: open_("/practice/joint_twist", name=name, **how)
 
 
 def cells(page, name=PART, count=3):

@@ -1,34 +1,22 @@
 """A finger on the crank, and on the sliders of Explore, in Chromium."""
 
 import pytest
-from site_browser import chromium, context_of, serious, served, too_wide
-from site_people import ZOE, Class
+from site_browser import desk_at, serious, too_wide, windows
+from site_people import ZOE
 
 pytestmark = pytest.mark.e2e
 
 
 @pytest.fixture(scope="module")
 def desk(tmp_path_factory):
-    class_ = Class(f"sqlite:///{tmp_path_factory.mktemp('site')}/site.db")
-    with served(class_) as address, chromium() as browser:
-        yield class_, address, browser
+    with desk_at(tmp_path_factory.mktemp("site")) as found:
+        yield found
 
 
 @pytest.fixture
 def window(desk):
-    class_, address, browser = desk
-    opened = []
-
-    def open_(place, **how):
-        context = context_of(browser, class_, address, ZOE, **how)
-        opened.append(context)
-        page = context.new_page()
-        page.goto(f"{address}{place}")
-        return page
-
-    yield open_
-    for context in opened:
-        context.close()
+    with windows(desk, ZOE) as open_:
+        yield open_
 
 
 def drag(page, start, steps):

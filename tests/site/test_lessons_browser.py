@@ -1,8 +1,8 @@
 """Lessons in Chromium: step by step by touch to an exercise, back to the place, blanks that are marked, the whole page without a script."""
 
 import pytest
-from site_browser import chromium, context_of, cut_in_print, low, serious, served, too_wide, watched
-from site_people import ZOE, Class
+from site_browser import cut_in_print, desk_at, low, serious, too_wide, watched, windows
+from site_people import ZOE
 
 from coursework.site.lessons.lesson_content import lesson_of
 
@@ -14,27 +14,15 @@ LESSON = "mobility_and_groups"  #: one that is short
 @pytest.fixture(scope="module")
 def desk(tmp_path_factory):
     """A site behind a server, and a browser."""
-    class_ = Class(f"sqlite:///{tmp_path_factory.mktemp('site')}/site.db")
-    with served(class_) as address, chromium() as browser:
-        yield class_, address, browser
+    with desk_at(tmp_path_factory.mktemp("site")) as found:
+        yield found
 
 
 @pytest.fixture
 def window(desk):
     """Makes windows of Zoé."""
-    class_, address, browser = desk
-    opened = []
-
-    def open_(place, **how):
-        context = context_of(browser, class_, address, ZOE, **how)
-        opened.append(context)
-        page = context.new_page()
-        page.goto(f"{address}{place}")
-        return page
-
-    yield open_
-    for context in opened:
-        context.close()
+    with windows(desk, ZOE) as open_:
+        yield open_
 
 
 def shown(page):

@@ -1,8 +1,8 @@
 """Practice in Chromium: a sheet fits its screen, pieces come in place, a page without script does; what is kept: test_keeping_browser.py."""
 
 import pytest
-from site_browser import chromium, context_of, low, serious, served, too_wide
-from site_people import ZOE, Class
+from site_browser import desk_at, low, serious, too_wide, windows
+from site_people import ZOE
 from site_practising import right_answer
 
 pytestmark = pytest.mark.e2e
@@ -13,27 +13,15 @@ EXERCISE = "slotted_mechanism"
 @pytest.fixture(scope="module")
 def desk(tmp_path_factory):
     """A site behind a server, and a browser."""
-    class_ = Class(f"sqlite:///{tmp_path_factory.mktemp('site')}/site.db")
-    with served(class_) as address, chromium() as browser:
-        yield class_, address, browser
+    with desk_at(tmp_path_factory.mktemp("site")) as found:
+        yield found
 
 
 @pytest.fixture
 def window(desk):
     """Makes windows of Zoé, each opened at a fresh variant or at an address."""
-    class_, address, browser = desk
-    opened = []
-
-    def open_(place="", **how):
-        context = context_of(browser, class_, address, how.pop("name", ZOE), **how)
-        opened.append(context)
-        page = context.new_page()
-        page.goto(f"{address}/practice/{place or EXERCISE}")
-        return page
-
-    yield open_
-    for context in opened:
-        context.close()
+    with windows(desk, ZOE) as open_:
+        yield lambda place="", **how: open_(f"/practice/{place or EXERCISE}", **how)
 
 
 def variant_of(desk, page):
