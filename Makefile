@@ -36,8 +36,7 @@ SITE ?= --demo
 site: $(VENV)/ready-site  ## The site on this machine, opened in the browser
 	$(BIN)/coursework serve --open $(SITE)
 
-# Tests wait for files, clocks and processes: there is one worker more than processors.
-PYTEST := python -m pytest -n $$(($$(getconf _NPROCESSORS_ONLN) + 1)) --dist worksteal -q
+PYTEST := python -m pytest -n auto --dist worksteal -q
 
 # Of each sweep over seeds, exercises or languages the first few: see tests/sweeps.py.
 test: $(VENV)/ready-test style  ## Every promise on a handful of exercises and on those that differ from the main branch
@@ -49,9 +48,10 @@ test-all: $(VENV)/ready-test $(VENV)/ready-e2e style  ## Every test, sweeps at f
 # Each commit names one of thirty-two shares by its own digits.
 SHARE ?= $(shell printf '%d/32' "$$((0x$$(git rev-parse --short=7 HEAD) % 32))")
 
-# What test has, all with other programs, a sixteenth of the sweeps over exercises and a part in 32 of their long ends.
+# What test has, all with other programs, a sixteenth of the sweeps over exercises and a part in 32 of their long ends. Tests
+# with other programs wait for these: there is one worker more than processors.
 test-share: $(VENV)/ready-test $(VENV)/ready-e2e style  ## Every promise, and a share of the sweeps that changes with each commit
-	$(BIN)/$(PYTEST) --share $(SHARE)
+	$(BIN)/$(subst auto,$$(($$(getconf _NPROCESSORS_ONLN) + 1)),$(PYTEST)) --share $(SHARE)
 
 # CLIENTS names what no registry has: make test-clients CLIENTS="--moodle ../moodle --qti-sdk ../qti-sdk"
 test-clients: $(VENV)/ready-test $(VENV)/ready-e2e  ## Exports in the real players and platforms that can be set up here
