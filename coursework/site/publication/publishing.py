@@ -472,7 +472,7 @@ def _seen(
 ) -> Response:
     pieces = paper.pieces()
     return request.render(
-        "site/student/assignment", state=state, form={}, versions="{}", problem="", look=look, zone=zone_name(request.received_at),
+        "site/student/assignment", state=state, form={}, versions="{}", problem="", draws=bool(paper.drawn), look=look, zone=zone_name(request.received_at),
         back=f"/desk/assignments/{listed.id}", paper_head=Markup(pieces.head), paper_body=Markup(pieces.body),
     )  # fmt: skip
 
