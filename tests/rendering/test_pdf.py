@@ -8,8 +8,10 @@ from dataclasses import replace
 
 import pytest
 import typst
+from pdf_text import page_texts
 from rendering_samples import answer_sheet, feedback_sheet, handout, many_given
 
+from coursework import open_course
 from coursework.course.builtin import builtin_root
 from coursework.course.texts import TextSection
 from coursework.rendering import pdf
@@ -31,6 +33,15 @@ def test_every_sheet_is_an_accessible_pdf_and_the_same_bytes_twice(make, lang):
     assert b"<pdfaid:part>2<" in pdf
     assert b"<pdfaid:conformance>A<" in pdf
     assert RENDERER.pdf(make(lang)) == pdf
+
+
+@every_language
+def test_the_paper_to_draw_on_stands_between_no_brackets(lang):
+    """What the typesetter reads as content is not printed as it is written."""
+    sheet = open_course()["velocity_polygon"].variant(0, lang).handout("Zoé Martin")
+    printed = "".join(page_texts(RENDERER.pdf(sheet)))
+    assert "160" in printed
+    assert not {"[", "]"} & {*printed}
 
 
 def pages_of(sheet) -> int:
