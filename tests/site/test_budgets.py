@@ -22,11 +22,9 @@ from site_walk import Filled, filled, fillings
 from coursework.database.permissions import is_of_staff
 from coursework.gradebook.submissions import read_rows
 from coursework.site.application import ROUTES
-from coursework.site.frame.budgets import ANSWER_FILE, HAND_IN, KILOBYTE, MEGABYTE, MOST_ROWS
+from coursework.site.frame.budgets import ANSWER_FILE, BOXES, HAND_IN, KILOBYTE, MEGABYTE, MOST_ROWS
 from coursework.site.frame.limits import ADDRESS, AT_ONCE, BACK, PERSON, Rate
 from coursework.site.frame.requests import Response as SiteResponse
-from coursework.site.lti.service import AT_ONCE as LINKS_AT_ONCE
-from coursework.site.lti.service import LARGEST
 from coursework.site.lti.site_host import SiteHost
 from coursework.site.papers import assignments
 from coursework.system.allowances import Allowances
@@ -362,7 +360,7 @@ def test_what_is_over_the_budget_of_a_link_is_refused_by_its_head_alone(linked):
         for address in link_addresses(linked, path):
             lines = (
                 f"POST {address} HTTP/1.1", f"Host: {urlsplit(url).netloc}", "Content-Type: application/x-www-form-urlencoded",
-                f"Content-Length: {LARGEST + 1}", f"Cookie: {cookies}", "", "",
+                f"Content-Length: {BOXES.largest + 1}", f"Cookie: {cookies}", "", "",
             )  # fmt: skip
             told[address] = answered(url, "\r\n".join(lines).encode()).split()[1]
     assert set(told.values()) == {b"413"}
@@ -371,7 +369,7 @@ def test_what_is_over_the_budget_of_a_link_is_refused_by_its_head_alone(linked):
 @pytest.mark.e2e
 def test_the_worst_body_of_a_link_takes_little_memory(linked):
     visitor, _, path = linked.enter()
-    kind, room, over = {"content-type": "application/x-www-form-urlencoded"}, LARGEST - 1024, []
+    kind, room, over = {"content-type": "application/x-www-form-urlencoded"}, BOXES.largest - 1024, []
     worst = urlencode({"x": "%" * (room // 3)}), "&".join(f"a{k}=" for k in range(40_000))[:room], "a" * room
     for address in link_addresses(linked, path):
         for body in worst:
@@ -411,21 +409,22 @@ def test_of_one_person_by_a_link_two_requests_are_answered_at_once(linked, monke
 
         many = [threads.submit(asked, k) for k in range(10)]
         try:
-            until(lambda: len(under_way) >= LINKS_AT_ONCE)
+            until(lambda: len(under_way) >= BOXES.at_once)
             mine = dict(linked.browser(MAX).cookies)
             page = httpx.get(f"{url}/assignments", cookies=mine, timeout=PATIENCE / 2, trust_env=False)
             assert page.status_code == 200
         finally:
             go_on.set()
         assert {one.result() for one in many} == {200}
-    assert most == LINKS_AT_ONCE
+    assert most == BOXES.at_once
 
 
 def test_who_took_much_of_a_processor_by_a_link_waits_and_still_hands_in(linked):
     visitor, page, path = linked.enter(name="Ada Byron")
     who = json.dumps([SITE, "ada"])
     other, _, theirs = linked.enter(sub="max", name="Max")
-    linked.site.limits.add_processor_time("link GET", who, AT_ONCE + 12 * BACK)
+    for kind in ("paper", "hand_in"):
+        linked.site.limits.add_processor_time(kind, who, AT_ONCE + 12 * BACK)
     for lang, said in (("en", "Too many requests"), ("fr", "Trop de demandes")):
         reply = visitor.browser.get(path, headers={"accept-language": lang})
         assert (reply.status_code, said in reply.text) == (429, True)
@@ -434,25 +433,64 @@ def test_who_took_much_of_a_processor_by_a_link_waits_and_still_hands_in(linked)
         )  # with what the opening itself took of a processor
     assert other.browser.get(theirs).status_code == 200
     assert visitor.hand_in(path, page, linked.right("Ada Byron")).status_code == 303
-    linked.site.limits.add_processor_time("link POST", who, AT_ONCE)
-    assert visitor.hand_in(path, page, {}).status_code == 429
 
 
 def test_each_page_of_a_link_is_counted_by_what_it_takes_of_a_processor(linked):
     visitor, page, path = linked.enter()
     spent = linked.site.limits._processor._spent
-    assert {kind for (kind, _), (seconds, _) in spent.items() if seconds > 0} == {"link GET"}
+    assert {kind for (kind, _), (seconds, _) in spent.items() if seconds > 0} == {"paper"}
     visitor.hand_in(path, page, {})
-    assert {kind for (kind, _), (seconds, _) in spent.items() if seconds > 0} == {"link GET", "link POST"}
+    assert {kind for (kind, _), (seconds, _) in spent.items() if seconds > 0} == {"paper", "hand_in"}
 
 
 def test_links_that_are_opened_without_end_are_refused(tmp_path, monkeypatch):
     """By an address, where nobody is known yet; who is in is counted by person."""
     monkeypatch.setitem(ADDRESS, "usual", Rate(6, 1))
     linked = Linked(tmp_path)
-    visitor, _, path = linked.enter()  # a login and a launch
-    assert [visitor.browser.get("/lti/login").status_code for _ in range(6)] == [403] * 4 + [429] * 2
+    visitor, _, path = linked.enter()  # a login
+    assert [visitor.browser.get("/lti/login").status_code for _ in range(6)] == [403] * 5 + [429]
     assert visitor.browser.get(path).status_code == 200
+
+
+def test_forged_launches_without_end_are_refused_as_passwords_are(tmp_path, monkeypatch):
+    monkeypatch.setitem(ADDRESS, "sign_in", Rate(4, 10))
+    linked = Linked(tmp_path)
+    visitor, _, path = linked.enter()  # one of the four
+    forged = {"state": "x", "id_token": "a.b.c"}
+    assert [visitor.returned(forged).status_code for _ in range(6)] == [400] * 3 + [429] * 3
+    assert visitor.browser.get(path).status_code == 200
+
+
+def test_forms_that_one_person_sends_without_end_are_refused_and_pages_are_not(tmp_path, monkeypatch):
+    """As submissions on the site; another link of the same person, or another browser, gives no more."""
+    monkeypatch.setitem(PERSON, "hand_in", Rate(3, 10))
+    linked = Linked(tmp_path)
+    (one, page, path), (two, again, theirs) = linked.enter(), linked.enter()
+    other, their_page, others = linked.enter(sub="max", name="Max")
+    assert [one.hand_in(path, page, {}).status_code for _ in range(2)] == [422] * 2
+    assert [two.hand_in(theirs, again, {}).status_code for _ in range(2)] == [422, 429]
+    assert one.browser.get(path).status_code == 200
+    assert other.hand_in(others, their_page, {}).status_code == 422
+
+
+def test_the_short_requests_of_links_precede_pages_as_those_of_the_site_do(linked, monkeypatch):
+    visitor, page, path = linked.enter()
+    lanes = []
+    for lane in ("short", "usual"):
+
+        async def seen(function, *arguments, lane=lane):
+            lanes.append((lane, function.__name__))
+            return function(*arguments)
+
+        monkeypatch.setattr(linked.site.lanes, lane, seen)
+    visitor.browser.get(path)
+    visitor.hand_in(path, page, {})
+    assert lanes == [
+        ("usual", "_launch_of"),
+        ("usual", "_counted"),
+        ("short", "_launch_of"),
+        ("short", "_counted"),
+    ]
 
 
 # ---------------------------------------------------------------------------------- places

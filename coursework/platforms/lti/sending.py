@@ -11,7 +11,7 @@ from coursework.platforms.lti.services import NotServed, Services
 from coursework.platforms.lti.settings import Settings
 from coursework.platforms.lti.storage import Storage, Waiting
 
-LOG = logging.getLogger("coursework.lti")
+LOG = logging.getLogger("coursework.site")
 _FIRST, _LONGEST = 5.0, 3600.0  #: seconds to the next attempt after one failure, and after many
 _PAUSE = 5.0  #: seconds between two checks
 _CONFLICT = 409

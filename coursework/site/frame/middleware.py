@@ -29,19 +29,23 @@ from coursework.site.frame.forms import read_form
 from coursework.site.frame.permission_check import GREATEST, check_permission, note_export, person_of
 from coursework.site.frame.requests import HTTPException, Person, Request, Route, preferred_language
 from coursework.site.frame.responses import redirect, set_cookie
-from coursework.site.frame.security_log import FAILED, event_of, location_of, log_events
+from coursework.site.frame.security_log import FAILED, event_of, location_of, log_event
 from coursework.site.frame.settings import Entrance, Site
-from coursework.site.frame.threads import Lanes, Run
+from coursework.site.frame.threads import Run
+from coursework.site.frame.turns import (
+    Visitor,
+    check_limits,
+    counted_time,
+    log_request,
+    reading_slot,
+    visitor_slot,
+)
 from coursework.site.people import home
 from coursework.system.headers import origin
-from coursework.system.processes import processor_time
-from coursework.system.request_slots import WAITING, Crowded
 
 LOG = logging.getLogger("coursework.site")
 _LOOPBACK = ("127.0.0.1", "localhost", "::1")
 _FORWARDED = ("x-forwarded-for", "x-forwarded-host", "forwarded", "x-real-ip")  #: headers that a proxy adds
-_STAFF_WAITING = 1000  #: waiting requests of a member of staff: a page of many pictures requests all at once
-_CROWDED = 2  #: seconds to wait if too many requests wait
 _AGAIN = 5  #: seconds to wait if the database is unavailable
 
 
@@ -49,13 +53,13 @@ class Middleware:
     """Middleware of all requests."""
 
     def __init__(self, site: Site):
-        self.site, self._lanes, self._attempts = site, Lanes(site.store), Attempts()
+        self.site, self._attempts = site, Attempts()
 
     async def answer(self, http: StarletteRequest, asked: Route | Exception) -> Response:
         """Return the response of a route, or to an address or a method that no route has; log the request: the page
         and the number of the person, never the content."""
         request = Request(self.site, http.scope, http.receive)
-        begun, level, why = time.perf_counter(), logging.INFO, ""
+        begun, why = time.perf_counter(), ""
         try:
             response = await self._response(request, asked)
         except ClientDisconnect:
@@ -63,14 +67,14 @@ class Middleware:
         except Exception as fault:
             refusal = _refusal_of(fault)
             if refusal.status_code == 500:  # logged without its message, which may contain an answer
-                level, why = logging.ERROR, f" {location_of(fault)}"
+                why = location_of(fault)
                 request.person, request.browser, request.is_new = None, Session(""), False
             response = await run_in_threadpool(self._refused, request, refusal)
-        took = 1000 * (time.perf_counter() - begun)
         path = asked.path if isinstance(asked, Route) else "-"
-        by = f" person {request.person.id}" if request.person else ""
-        LOG.log(level, "%s %s %d %.0f ms%s%s", request.method, path, response.status_code, took, by, why)
-        log_events(request, path)
+        label = _visitor(request).label
+        log_request(request.method, path, response.status_code, begun, label, why, is_error=bool(why))
+        for event, person in request.events:
+            log_event(event, request.method, path, f"person {person}" if person else "", request.client_address)
         return response
 
     async def _response(self, request: Request, asked: Route | Exception) -> Response:
@@ -78,28 +82,28 @@ class Middleware:
         if isinstance(asked, Exception):
             await run_in_threadpool(self._find_user, request)
             raise asked
-        run: Run = self._lanes.short if asked.is_short else self._lanes.usual
+        lanes = self.site.lanes
+        run: Run = lanes.short if asked.is_short else lanes.usual
         await run(self._let_in, request, asked)
-        budget, slots = asked.request_budget, self.site.places
+        budget = asked.request_budget
         async with AsyncExitStack() as held:
-            if request.person is not None:
-                waiting = _STAFF_WAITING if request.person.is_staff else WAITING
-                await held.enter_async_context(
-                    slots.slot((request.person.id, budget.name), budget.at_once, waiting)
-                )
+            await held.enter_async_context(visitor_slot(self.site, _visitor(request), budget))
             if request.is_post:
                 request.form = await read_form(request, budget)
             if request.is_post and asked.attempt is not None:
                 attempt = await run(self._attempt, request, asked.attempt)
                 await held.enter_async_context(self._attempts.waited(attempt))
             if request.form.files:
-                await held.enter_async_context(slots.slot(budget.name, budget.readings, _STAFF_WAITING))
+                await held.enter_async_context(reading_slot(self.site, budget))
             return await run(self._page, request, asked)
 
     def _let_in(self, request: Request, route: Route) -> None:
         """Find the current user, and check what they may; the form is not read before."""
         self._find_user(request)
-        self._check_often(request, route)
+        visitor = _visitor(request)._replace(
+            browser="" if request.person else Devices(self.site.secret).name(request.device)
+        )
+        check_limits(self.site, route.limit, visitor, request.client_address, is_short=route.is_short)
         if request.is_post:
             self._check_origin(request)
         check_permission(self.site, route, request.person, request.path_params, is_post=request.is_post)
@@ -109,8 +113,7 @@ class Middleware:
         return attempt(request)
 
     def _page(self, request: Request, route: Route) -> Response:
-        begun = processor_time()
-        try:
+        with counted_time(self.site, route.limit, _visitor(request)):
             if request.is_post:
                 self._check_csrf_token(request)
             elif not route.has_page:
@@ -121,10 +124,6 @@ class Middleware:
             if response.status_code == 401:
                 request.events.append((FAILED, request.person.id if request.person else 0))
             return self._sent(request, response)
-        finally:
-            if request.person is not None:
-                spent = processor_time() - begun
-                self.site.limits.add_processor_time(route.limit, request.person.id, spent)
 
     # ------------------------------------------------------------ current user
 
@@ -186,19 +185,6 @@ class Middleware:
         if self.site.entrance is not Entrance.ACCOUNTS and any(h in request.headers for h in _FORWARDED):
             raise HTTPException("forwarded", 421)
 
-    def _check_often(self, request: Request, route: Route) -> None:
-        """Check the limits on the rate of requests and on processor time.
-
-        Routes that only store, such as submission, are not refused because of earlier processor time.
-        """
-        person, limits = request.person.id if request.person else 0, self.site.limits
-        browser = "" if person else Devices(self.site.secret).name(request.device)
-        wait = limits.wait_for_rate(route.limit, person, request.client_address, browser)
-        if request.person is not None and not request.person.is_staff and not route.is_short:
-            wait = max(wait, limits.wait_for_processor(route.limit, person))
-        if wait:
-            raise HTTPException("too_often", 429, wait)
-
     def _check_origin(self, request: Request) -> None:
         """Check that a form comes from a page of this site, according to the browser's headers."""
         sent, host = request.headers.get("origin"), request.headers.get("host", "")
@@ -233,7 +219,7 @@ class Middleware:
         return response
 
     def _refused(self, request: Request, why: HTTPException) -> Response:
-        if event := event_of(why):
+        if event := event_of(why.sentence, why.status_code):
             request.events.append((event, request.person.id if request.person else 0))
         if why.sentence == "sign_in" and not request.is_post and not request.is_fragment:
             return self._sent(request, redirect(home.door_to(request)))
@@ -250,6 +236,11 @@ class Middleware:
         return self._sent(request, response)
 
 
+def _visitor(request: Request) -> Visitor:
+    person = request.person
+    return Visitor(person.id, person.is_staff, label=f"person {person.id}") if person else Visitor()
+
+
 def _refusal_of(fault: Exception) -> HTTPException:
     """Return the refusal for a fault, with status 500 for an unexpected one."""
     if isinstance(fault, HTTPException):
@@ -258,8 +249,6 @@ def _refusal_of(fault: Exception) -> HTTPException:
         refusal = HTTPException("method" if fault.status_code == 405 else "page", fault.status_code)
         refusal.headers = {"allow": "GET, HEAD"} if fault.status_code == 405 else None
         return refusal
-    if isinstance(fault, Crowded):
-        return HTTPException("too_often", 429, _CROWDED)
     if isinstance(fault, TooMany):
         return HTTPException("too_often", 429, fault.seconds)
     if isinstance(fault, UnknownName):

@@ -9,7 +9,6 @@ from __future__ import annotations
 import logging
 import traceback
 
-from coursework.site.frame.requests import HTTPException, Request
 from coursework.system.allowances import network
 
 LOG = logging.getLogger("coursework.security")
@@ -28,17 +27,15 @@ _BY_STATUS = {
 _BY_SENTENCE = {"form": "forged form", "own": "no permission", "role": "no permission"}
 
 
-def event_of(why: HTTPException) -> str:
+def event_of(sentence: str, status: int) -> str:
     """Return the security event of a refusal; empty if it does not concern security."""
-    return _BY_SENTENCE.get(why.sentence) or _BY_STATUS.get(why.status_code, "")
+    return _BY_SENTENCE.get(sentence) or _BY_STATUS.get(status, "")
 
 
-def log_events(request: Request, path: str) -> None:
-    """Write the events of a request, one line each, with the path of the route."""
-    for event, person in request.events:
-        level = logging.INFO if event in (SIGNED_IN, SIGNED_OUT) else logging.WARNING
-        by, address = f"person {person}" if person else "nobody", network(request.client_address)
-        LOG.log(level, "security: %s, %s %s, %s, from %s", event, request.method, path, by, address)
+def log_event(event: str, method: str, path: str, by: str, address: str) -> None:
+    """Write an event, with the path of the route, who sent the request if anybody is known, and the network."""
+    level = logging.INFO if event in (SIGNED_IN, SIGNED_OUT) else logging.WARNING
+    LOG.log(level, "security: %s, %s %s, %s, from %s", event, method, path, by or "nobody", network(address))
 
 
 def location_of(fault: BaseException) -> str:

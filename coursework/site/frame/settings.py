@@ -25,6 +25,7 @@ from coursework.site.frame.limits import Limits
 from coursework.site.frame.lru_cache import LRUCache
 from coursework.site.frame.pages import SitePages
 from coursework.site.frame.pool import PracticePool
+from coursework.site.frame.threads import Lanes
 from coursework.system.request_slots import RequestSlots
 
 _VARIANTS = 1200  #: items of the cache: variants with their answer keys, and drawings
@@ -68,6 +69,10 @@ class Site:
     @cached_property
     def pages(self) -> SitePages:
         return SitePages(self.course.folder)
+
+    @cached_property
+    def lanes(self) -> Lanes:
+        return Lanes(self.store)
 
     @cached_property
     def pool(self) -> PracticePool:

@@ -39,7 +39,7 @@ from coursework.site.frame.settings import Site
 from coursework.site.papers.assignment_state import AssignmentState
 from coursework.site.papers.submission import pass_dates
 
-LOG = logging.getLogger("coursework.lti")
+LOG = logging.getLogger("coursework.site")
 WAITS = ("to_mark", "unreadable")  #: verdicts of answers that wait for a person
 _COMMENT = 900  #: characters of a comment in the gradebook
 _PAUSE = 5.0  #: seconds between two checks

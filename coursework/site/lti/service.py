@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import hmac
 import json
-import logging
-import re
 import time
 from collections.abc import AsyncIterator, Callable, Mapping, Sequence
 from contextlib import asynccontextmanager
@@ -36,26 +34,20 @@ from coursework.platforms.lti.services import Member, NotServed, Services
 from coursework.platforms.lti.settings import LTIPlatform, Settings, checked_url, read_settings
 from coursework.platforms.lti.storage import Storage, Waiting
 from coursework.platforms.lti.tokens import verified
-from coursework.site.frame.budgets import Budget
+from coursework.site.frame.budgets import BOXES, HAND_IN
 from coursework.site.frame.cookies import Session
 from coursework.site.frame.forms import read_form
 from coursework.site.frame.requests import FormData, preferred_language
-from coursework.site.frame.requests import HTTPException as RefusedForm
-from coursework.site.frame.security_log import location_of
+from coursework.site.frame.requests import HTTPException as RefusedRequest
+from coursework.site.frame.security_log import FAILED, SIGNED_IN, event_of, location_of, log_event
 from coursework.site.frame.settings import Site
+from coursework.site.frame.turns import Visitor, check_limits, counted_time, log_request, visitor_slot
 from coursework.site.lti.launch_request import LTIRequest
 from coursework.site.lti.offers import offer_groups
 from coursework.site.lti.scores import ScoreWatch
 from coursework.site.lti.site_host import SiteHost
 from coursework.system.headers import Guarded, origin, security_headers
-from coursework.system.processes import processor_time
-from coursework.system.request_slots import Crowded
 
-LOG = logging.getLogger("coursework.lti")
-LARGEST = 256 * 1024  #: bytes of a form
-AT_ONCE = 2  #: requests of one person that are answered at once; the others wait
-_BUDGET = Budget("lti", LARGEST, 400, AT_ONCE)
-_AGAIN = 2  #: seconds until another attempt if too many requests wait
 _ROSTER_SECONDS = 60.0  #: for which a roster is cached
 _SECONDS = 8.0  #: time limit of a platform's response
 
@@ -106,11 +98,11 @@ def mounted(
     lti_service = _Service(settings, site, client or _client(), clock)
     watch = ScoreWatch(site, lti_service.storage, lti_service.sender.wake)
     routes = [
-        Route("/login", lti_service.answering(lti_service.login), methods=["GET", "POST"]),
-        Route("/launch", lti_service.answering(lti_service.launch), methods=["POST"]),
-        Route("/jwks", lti_service.answering(lti_service.jwks), methods=["GET"]),
-        Route("/at/{session}", lti_service.answering(lti_service.page), methods=["GET", "POST"]),
-        Route("/at/{session}/{path:path}", lti_service.answering(lti_service.page), methods=["GET", "POST"]),
+        lti_service.route("/login", lti_service.login, ["GET", "POST"]),
+        lti_service.route("/launch", lti_service.launch, ["POST"], "sign_in"),
+        lti_service.route("/jwks", lti_service.jwks, ["GET"]),
+        lti_service.route("/at/{session}", lti_service.page, ["GET", "POST"]),
+        lti_service.route("/at/{session}/{path:path}", lti_service.page, ["GET", "POST"]),
     ]
 
     @asynccontextmanager
@@ -152,59 +144,78 @@ class _Service:
 
     # ------------------------------------------------------------------ requests
 
-    def answering(self, work: Callable[[Request, FormData], Response]) -> Callable[[Request], Any]:
-        """Return an endpoint that works in a thread; a refusal or an unexpected fault becomes a page, never a
-        traceback."""
+    def route(
+        self,
+        path: str,
+        work: Callable[[Request, FormData], Response],
+        methods: Sequence[str],
+        limit: str = "usual",
+    ) -> Route:
+        """Return the route of an endpoint under the site's limits, with a kind of page (:mod:`coursework.site.frame.limits`)
+        for requests without a session; a refusal or an unexpected fault becomes a page, never a traceback."""
 
         async def answer(request: Request) -> Response:
-            begun = time.perf_counter()
+            begun, refusal, fault_at = time.perf_counter(), None, ""
             try:
-                response = await self._in_turn(request, work)
-                why = ""
-            except LTIRefusal as fault:
-                response, why = await run_in_threadpool(self.refused, request, fault), str(fault)
+                response = await self._response(request, work, limit)
             except Exception as fault:
-                why = location_of(fault)
-                LOG.error("%s failed: %s", _shown_path(request), why)
-                response = await run_in_threadpool(self.refused, request, LTIRefusal("failed", 500))
+                refusal = _refusal_of(fault)
+                fault_at = location_of(fault) if refusal.why == "failed" else ""
+                response = await run_in_threadpool(self.refused, request, refusal)
             self._guard(response, request)
-            path = _shown_path(request)
-            LOG.info(
-                "%s %s %d %.0f ms%s",
-                request.method,
-                path,
-                response.status_code,
-                1000 * (time.perf_counter() - begun),
-                why and f" {why}",
-            )
+            self._log(request, PATH + path, response, begun, refusal, fault_at)
             return response
 
-        return answer
+        return Route(path, answer, methods=list(methods))
 
-    async def _in_turn(self, request: Request, work: Callable[[Request, FormData], Response]) -> Response:
-        """Run an endpoint when fewer requests of the same person are in progress, without blocking a thread
-        meanwhile.
+    async def _response(
+        self, request: Request, work: Callable[[Request, FormData], Response], limit: str
+    ) -> Response:
+        """Run an endpoint in the threads of the site, when its limits allow the person of the session, or the address of
+        somebody unknown, another request. A student's form is a submission, which precedes pages."""
+        lanes, is_post = self.site.lanes, request.method == "POST"
+        launch = await (lanes.short if is_post else lanes.usual)(self._launch_of, request)
+        is_short = is_post and launch is not None and launch.role is Role.STUDENT
+        kind = limit if launch is None else "hand_in" if is_short else "paper"
+        visitor, budget = _visitor(launch), HAND_IN if is_short else BOXES
+        check_limits(self.site, kind, visitor, _address(request), is_short=is_short)
+        async with visitor_slot(self.site, visitor, budget):
+            form = await read_form(request, budget) if is_post else FormData()
+            return await (lanes.short if is_short else lanes.usual)(
+                self._counted, kind, visitor, work, request, form
+            )
 
-        Raises
-        ------
-        LTIRefusal
-            The person, or the address of an unknown person, sends too many requests.
-        """
-        launch = await run_in_threadpool(self._launch_of, request)
-        if launch is None:
-            self._count(request, "")
-            return await run_in_threadpool(work, request, await _form(request))
-        person = json.dumps([launch.issuer, launch.person])
-        self._count(request, person)
-        kind = f"link {request.method}"  # pages are counted apart from forms, which a page never keeps back
-        if launch.role is Role.STUDENT and (wait := self.site.limits.wait_for_processor(kind, person)):
-            raise LTIRefusal("too_often", 429, f"{wait} s", wait=wait)
-        try:
-            async with self.site.places.slot(person, AT_ONCE):
-                form = await _form(request)
-                return await run_in_threadpool(self._charged, (kind, person), work, request, form)
-        except Crowded:
-            raise LTIRefusal("too_often", 429, "too many at once", wait=_AGAIN) from None
+    def _counted(
+        self,
+        kind: str,
+        visitor: Visitor,
+        work: Callable[[Request, FormData], Response],
+        request: Request,
+        form: FormData,
+    ) -> Response:
+        with counted_time(self.site, kind, visitor):
+            return work(request, form)
+
+    def _log(
+        self,
+        request: Request,
+        path: str,
+        response: Response,
+        begun: float,
+        refusal: LTIRefusal | None,
+        fault: str,
+    ) -> None:
+        """Log a request as the site does, with the reason of a refusal, and its event of security."""
+        label = _visitor(getattr(request.state, "launch", None)).label
+        is_error = bool(fault)
+        why = fault or str(refusal or "")
+        log_request(request.method, path, response.status_code, begun, label, why, is_error=is_error)
+        if refusal is not None:
+            event = FAILED if refusal.status == 401 else event_of(refusal.why, refusal.status)
+        else:
+            event = SIGNED_IN if path == f"{PATH}/launch" else ""
+        if event:
+            log_event(event, request.method, path, label, _address(request))
 
     def _launch_of(self, request: Request) -> Launch | None:
         """Return the launch of the session in the address, for this browser; None if the address has no
@@ -216,25 +227,6 @@ class _Service:
             name, request.cookies.get(session_cookie(name, self.settings.url))
         )
         return launch
-
-    def _count(self, request: Request, person: str) -> None:
-        """Count a request of a person, or of the address of an unknown one."""
-        address = request.client.host if request.client else ""
-        if wait := self.site.limits.wait_for_rate("usual", 0, address, person):
-            raise LTIRefusal("too_often", 429, f"{wait} s", wait=wait)
-
-    def _charged(
-        self,
-        key: tuple[str, str],
-        work: Callable[[Request, FormData], Response],
-        request: Request,
-        form: FormData,
-    ) -> Response:
-        begun = processor_time()
-        try:
-            return work(request, form)
-        finally:
-            self.site.limits.add_processor_time(*key, processor_time() - begun)
 
     def _guard(self, response: Response, request: Request) -> None:
         """Add the security headers; registered platforms may show the page in a frame."""
@@ -456,23 +448,28 @@ class _Service:
 # -------------------------------------------------------------------------- pieces
 
 
-async def _form(request: Request) -> FormData:
-    """Return the form of a POST request; an empty one for another request.
-
-    Raises
-    ------
-    LTIRefusal
-        The form is too large, too slow, or cannot be read.
-    """
-    if request.method != "POST":
-        return FormData()
-    try:
-        return await read_form(request, _BUDGET)
-    except RefusedForm as fault:
-        why = "too_large" if fault.status_code == 413 else "bad_request"
-        raise LTIRefusal(why, fault.status_code, "a form") from None
+def _visitor(launch: Launch | None) -> Visitor:
+    """Return the sender of a request as the limits know them: the person on the platform, whichever link they opened."""
+    if launch is None:
+        return Visitor()
+    return Visitor(
+        json.dumps([launch.issuer, launch.person]),
+        launch.role.sees_class or launch.role.picks,
+        label=f"somebody of {launch.platform}",
+    )
 
 
-def _shown_path(request: Request) -> str:
-    """Return the path for the log, without the query and the name of the session."""
-    return re.sub(r"/at/[^/]+", "/at/…", request.url.path)[:100]
+def _address(request: Request) -> str:
+    return request.client.host if request.client else ""
+
+
+def _refusal_of(fault: Exception) -> LTIRefusal:
+    """Return the refusal for a fault, with status 500 for an unexpected one."""
+    if isinstance(fault, LTIRefusal):
+        return fault
+    if not isinstance(fault, RefusedRequest):
+        return LTIRefusal("failed", 500)
+    if fault.sentence == "too_often":
+        seconds = int(str(fault.parts[0]))
+        return LTIRefusal("too_often", 429, f"{seconds} s", wait=seconds)
+    return LTIRefusal("too_large" if fault.status_code == 413 else "bad_request", fault.status_code, "a form")

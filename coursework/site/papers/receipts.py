@@ -83,6 +83,7 @@ class PendingMarking(NamedTuple):
 
     message: str
     seconds: int  #: until the page reloads; 0 if reloading is useless
+    ahead: int = 0  #: submissions that are marked before
 
 
 def pending_marking(request: Request, delivery: int) -> PendingMarking | None:
@@ -94,10 +95,10 @@ def pending_marking(request: Request, delivery: int) -> PendingMarking | None:
             return None
         if job.fault:
             return PendingMarking(str(messages["not_marked"]), 0)
-        seconds = round(min(_LONGEST, _SOON + _EACH * jobs_before(connection, job)))
-    return PendingMarking(
-        str(messages["being_marked"]).format(length_text(timedelta(seconds=seconds), request.lang)), seconds
-    )
+        ahead = jobs_before(connection, job)
+    seconds = round(min(_LONGEST, _SOON + _EACH * ahead))
+    message = str(messages["being_marked"]).format(length_text(timedelta(seconds=seconds), request.lang))
+    return PendingMarking(message, seconds, ahead)
 
 
 def file(request: Request) -> Response:

@@ -335,7 +335,7 @@ def test_a_form_that_is_too_large_is_refused(visitor):
     )  # by its head alone
     page, path = visitor.enter()
     assert visitor.hand_in(path, page, {"e1-rA": "1" * 5000}).status_code == 413
-    assert refused(visitor.browser.post(path, data={f"f{k}": "1" for k in range(500)}), "bad_request", 400)
+    assert refused(visitor.browser.post(path, data={f"f{k}": "1" for k in range(1500)}), "bad_request", 400)
     assert refused(visitor.browser.post(path, files={"rA": b"1"}), "bad_request", 400)
     json = {"content-type": "application/json"}
     assert refused(visitor.browser.post(path, content=b"{}", headers=json), "bad_request", 415)
@@ -406,14 +406,32 @@ def test_only_the_platform_may_hold_a_page_in_a_frame(visitor):
 
 
 def test_the_log_holds_neither_answers_nor_tokens(visitor, caplog):
-    with caplog.at_level(logging.DEBUG, "coursework.lti"):
+    with caplog.at_level(logging.DEBUG, "coursework.site"):
         page, path = visitor.enter()
         visitor.hand_in(path, page, {"e1-rA": "12345.678 mm"})
         visitor.browser.get(path)
         visitor.launch(sign=lambda claims: "a.b.c")
-    assert caplog.text.count("coursework.lti") >= 5
+    assert caplog.text.count("coursework.site") >= 5
     for secret in ("12345.678", path.rpartition("/")[2], seal(page.text), "Ada"):
         assert secret not in caplog.text
+
+
+def test_what_concerns_security_is_in_the_site_s_log_of_it(tool, visitor, caplog):
+    with caplog.at_level(logging.INFO, "coursework.security"):
+        _, path = visitor.enter()
+        visitor.launch(sign=lambda claims: "a.b.c")
+        visitor.browser.post(path, data={"_seal": "forged"})
+        tool.visitor().browser.get(path)
+    events = [
+        record.getMessage().removeprefix("security: ").partition(", from ") for record in caplog.records
+    ]
+    assert [event for event, _, _ in events] == [
+        "signed in, POST /lti/launch, nobody",
+        "sign-in failed, POST /lti/launch, nobody",
+        "forged form, POST /lti/at/{session}, somebody of learn.example.org",
+        "no permission, GET /lti/at/{session}, nobody",
+    ]
+    assert {address for _, _, address in events} == {"testclient"}
 
 
 def test_what_fails_is_a_page_and_no_traceback(visitor, caplog, monkeypatch):
@@ -423,7 +441,7 @@ def test_what_fails_is_a_page_and_no_traceback(visitor, caplog, monkeypatch):
         raise ZeroDivisionError("the answer was 12345.678")
 
     monkeypatch.setattr(SiteHost, "answer", fails)
-    with caplog.at_level(logging.INFO, "coursework.lti"):
+    with caplog.at_level(logging.INFO, "coursework.site"):
         answer = visitor.hand_in(path, page, {"e1-rA": "12345.678"})
     assert refused(answer, "failed", 500)
     assert "ZeroDivisionError" in caplog.text

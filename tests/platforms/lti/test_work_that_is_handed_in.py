@@ -44,6 +44,7 @@ from coursework.platforms.lti.launch import launch_of
 from coursework.platforms.lti.sending import wait_after
 from coursework.platforms.lti.services import NotServed, Services
 from coursework.platforms.lti.storage import Score
+from coursework.site import worker
 
 SAID = words("en")["lti"]
 NAME = "slotted_mechanism"
@@ -136,6 +137,24 @@ def test_feedback_on_an_exercise_waits_for_no_worker(tool, visitor):
     page, _ = works(visitor, tool)
     assert "<b>9</b> / 9 points" in page.text.replace("\u00a0", " ")
     assert tool.send() == (1, 0)
+
+
+def test_in_a_rush_an_exercise_is_acknowledged_and_its_page_reloads_until_the_worker_has_marked_it(
+    tool, monkeypatch
+):
+    tool.site.has_worker = True
+    for k in range(6):
+        other = tool.visitor()
+        page, path = other.enter(sub=f"student {k}", custom={"exercise": NAME})
+        assert other.hand_in(path, page, right_answers(tool, page.text)).status_code == 303
+    assert not tool.one(mark.c.id)  # no form waits for a mark
+    receipt = other.browser.get(path)
+    assert words("en", "site")["lti"]["handed_in"] in receipt.text
+    assert 3 <= int(receipt.headers["refresh"]) <= 5
+    monkeypatch.setattr(worker, "_QUIET", timedelta(0))
+    while worker.Worker(tool.site, "here").work_once():
+        pass
+    assert "<b>9</b> / 9 points" in other.browser.get(path).text.replace("\u00a0", " ")
 
 
 def test_what_cannot_be_read_uses_no_try(tool, visitor):
