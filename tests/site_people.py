@@ -20,9 +20,11 @@ from coursework.site.application import application
 from coursework.site.frame import pool
 from coursework.site.frame.cookies import COOKIE, Cookies, Session
 from coursework.site.frame.settings import Entrance, Site
+from coursework.site.lessons import lesson_content
 
-#: What one site finds of the built-in course, another finds as well.
+#: What one site finds of the built-in course, another finds as well; a lesson is rendered in a process that begins for it.
 pool._drawn = cache(pool._drawn)
+lesson_content._rendered = cache(lesson_content._rendered)
 
 HOME = "http://127.0.0.1:8000"
 ZOE, MAX, TEACHER = "Zoé", "Max", "Ada Teacher"
