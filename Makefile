@@ -10,21 +10,25 @@ BIN := $(VENV)/bin
 .PHONY: demo site test test-all test-share test-clients test-plain golden docs style lint wheel wheel-test lock lock-test sbom audit clean
 .DEFAULT_GOAL := demo
 
-# A stamp for each extra, all in one environment: a command installs what it still lacks. Renewed when the requirements
-# change; edited code needs no reinstallation. pip would compile one file after another, and tests of libraries too.
+# A stamp for each extra, all in one environment: a command installs what it still lacks, the package with its extras at once.
+# Renewed when the requirements change; edited code needs no reinstallation. pip would compile one file after another, and tests
+# of libraries too; the package itself is compiled while pip waits for the network.
 PIP := $(BIN)/python -m pip install --quiet --disable-pip-version-check --no-compile
 define install
-$(PIP) --editable '.$(1)'
-$(BIN)/python -m compileall -qq -j 0 -x '/tests?/' $(VENV)/lib coursework || true
-touch $@
+$(BIN)/python -m compileall -qq coursework & $(PIP) --editable '.$(1)'; code=$$?; wait; exit $$code
+$(BIN)/python -m compileall -qq -j 0 -x '/tests?/' $(VENV)/lib || true
+touch $(VENV)/ready $@
 endef
 
-$(VENV)/ready: pyproject.toml
+$(VENV)/made: pyproject.toml
 	@test -n "$(PYTHON)" || { echo "Python 3.11 or newer is needed; none was found. Try: make PYTHON=/path/to/python"; exit 2; }
 	$(PYTHON) -m venv $(VENV)
+	touch $@
+
+$(VENV)/ready: $(VENV)/made
 	$(call install,)
 
-$(VENV)/ready-%: $(VENV)/ready
+$(VENV)/ready-%: $(VENV)/made
 	$(call install,[$*])
 
 demo: $(VENV)/ready  ## The whole job on a class of twelve
@@ -36,14 +40,15 @@ SITE ?= --demo
 site: $(VENV)/ready-site  ## The site on this machine, opened in the browser
 	$(BIN)/coursework serve --open $(SITE)
 
-PYTEST := python -m pytest -n auto --dist worksteal -q
+# Workers read what another has compiled, even where the user's Python writes none of it.
+PYTEST := PYTHONDONTWRITEBYTECODE= $(BIN)/python -m pytest -n auto --dist worksteal -q
 
 # Of each sweep over seeds, exercises or languages the first few: see tests/sweeps.py.
 test: $(VENV)/ready-test style  ## Every promise on a handful of exercises and on those that differ from the main branch
-	$(BIN)/$(PYTEST) -m "not slow and not sweep and not e2e"
+	$(PYTEST) -m "not slow and not sweep and not e2e"
 
 test-all: $(VENV)/ready-test $(VENV)/ready-e2e style  ## Every test, sweeps at full length
-	$(BIN)/$(PYTEST)
+	$(PYTEST)
 
 # Each commit names one of thirty-two shares by its own digits.
 SHARE ?= $(shell printf '%d/32' "$$((0x$$(git rev-parse --short=7 HEAD) % 32))")
@@ -51,7 +56,7 @@ SHARE ?= $(shell printf '%d/32' "$$((0x$$(git rev-parse --short=7 HEAD) % 32))")
 # What test has, all with other programs, a sixteenth of the sweeps over exercises and a part in 32 of their long ends. Tests
 # with other programs wait for these: there is one worker more than processors.
 test-share: $(VENV)/ready-test $(VENV)/ready-e2e style  ## Every promise, and a share of the sweeps that changes with each commit
-	$(BIN)/$(subst auto,$$(($$(getconf _NPROCESSORS_ONLN) + 1)),$(PYTEST)) --share $(SHARE)
+	$(subst auto,$$(($$(getconf _NPROCESSORS_ONLN) + 1)),$(PYTEST)) --share $(SHARE)
 
 # CLIENTS names what no registry has: make test-clients CLIENTS="--moodle ../moodle --qti-sdk ../qti-sdk"
 test-clients: $(VENV)/ready-test $(VENV)/ready-e2e  ## Exports in the real players and platforms that can be set up here
@@ -68,7 +73,7 @@ VECTOR_UNITS := import numpy; print(*numpy.show_config('dicts').get('SIMD Extens
 test-plain: $(VENV)/ready-test  ## The numbers once more, with other last bits
 	NPY_DISABLE_CPU_FEATURES="$$($(BIN)/python -c "$(VECTOR_UNITS)")" OPENBLAS_CORETYPE=Nehalem \
 	GLIBC_TUNABLES=glibc.cpu.hwcaps=-AVX2,-FMA,-AVX2_Usable,-FMA_Usable \
-	$(BIN)/$(PYTEST) -m "not slow and not sweep and not e2e" $(NUMBERS:%=tests/%)
+	$(PYTEST) -m "not slow and not sweep and not e2e" $(NUMBERS:%=tests/%)
 
 # The oldest numpy that pyproject.toml allows, in a folder that goes before what is installed.
 OLDEST := numpy==1.26.0 scipy==1.11.1
@@ -144,7 +149,7 @@ style: $(VENV)/ready-test  ## Names, imports and layout
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 
-lint: style  ## And the types, which the tests check as well
+lint: $(VENV)/ready-e2e style  ## And the types, which the tests with other programs check as well
 	$(BIN)/mypy
 
 clean:

@@ -39,12 +39,27 @@ def pytest_addoption(parser):
     )
 
 
+class _Backwards(pytest.Dir):
+    """A folder whose files are collected from the last to the first."""
+
+    def collect(self):
+        return reversed([*super().collect()])
+
+
+def pytest_collect_directory(path, parent):
+    """Every second worker begins at the end: the files that the others have compiled by then, it need not compile."""
+    worker = getattr(parent.config, "workerinput", {"workerid": "gw0"})["workerid"]
+    return _Backwards.from_parent(parent, path=path) if int(worker[2:]) % 2 else None
+
+
 @pytest.hookimpl(wrapper=True)
 def pytest_collection_modifyitems(config, items):
     """Mark the sweeps before ``-m`` chooses, and take a share of the slow tests after it.
 
-    Every process finds the same share, since it goes by the names of the tests.
+    Every process finds the same tests in the same order, and the same share, since it goes by their names.
     """
+    if hasattr(config, "workerinput"):
+        items.sort(key=lambda item: item.path)
     mark_sweeps(items, set(coursework.open_course().names))
     yield
     told = re.fullmatch(r"(\d+)/([1-9]\d*)", config.option.share)
