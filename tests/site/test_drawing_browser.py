@@ -1,141 +1,32 @@
-"""Constructions drawn by touch in Chromium: from the statement to full points, mistakes with their names, kept and opened again."""
+"""The drawing surface in Chromium: by touch, mouse and keys; what is drawn is kept, and what is typed is drawn."""
 
 import cmath
 import json
 import math
-import re
-from collections import defaultdict
 from dataclasses import replace
 
 import pytest
 from site_assignments import ASSIGNMENT, dealt
-from site_browser import WIDTHS, chromium, context_of, low, serious, served, told, too_wide, watched
-from site_people import ZOE, Class
-from site_practising import right_answer
+from site_browser import WIDTHS, context_of, desk_at, low, serious, told, too_wide, watched
+from site_pencil import Draughtsman
+from site_people import ZOE
 
 import coursework
 from coursework.figures.student_drawing import StudentDrawing
 from coursework.issuing.assignment import AskedExercise
 from coursework.marking.marking import mark
 from coursework.rendering import html
-from coursework.rendering.surface import surface
 from coursework.sheets.handout import handout
 
 pytestmark = pytest.mark.e2e
 
-DRAWN = [name for name in coursework.open_course().names if coursework.open_course()[name].spec.drawing_mm]
-_SEEDS = defaultdict(set)  #: a variant for each drawing
 PLACES = [("telephone", "fr"), ("desk", "en")]
 
 
 @pytest.fixture(scope="module")
 def desk(tmp_path_factory):
-    """A site behind a server, and a browser."""
-    class_ = Class(f"sqlite:///{tmp_path_factory.mktemp('site')}/site.db")
-    with served(class_) as address, chromium() as browser:
-        yield class_, address, browser
-
-
-class Pencil:
-    """A finger on the drawing surface of a practice page."""
-
-    def __init__(self, desk, exercise, size="telephone", lang="en"):
-        self.class_, address, browser = desk
-        self.context = context_of(browser, self.class_, address, ZOE, lang=lang, size=size)
-        self.page = self.context.new_page()
-        self.faults = watched(self.page)
-        self.page.set_default_timeout(20_000)
-        seed = self.class_.site.pool.choose_seed(exercise, self.class_.ids[ZOE], _SEEDS[exercise])
-        _SEEDS[exercise].add(seed)
-        self.page.goto(f"{address}/practice/{exercise}/{seed}")
-        self.fingers = self.context.new_cdp_session(self.page)
-        self.variant = self.class_.site.variant(exercise, seed, lang)
-
-    def place(self, z):
-        """Pixels of a point of the paper, mm."""
-        return self.page.evaluate(
-            """([x, y]) => { const n = document.querySelector("[data-surface]"), at = n.getBoundingClientRect();
-            if (at.top < 0 || at.bottom > innerHeight) n.scrollIntoView({ block: "center" });
-            const b = n.getBoundingClientRect(),
-            v = n.getAttribute("viewBox").split(" ").map(Number);
-            return [b.left + (x - v[0]) * b.width / v[2], b.top + (-y - v[1]) * b.height / v[3]]; }""",
-            [z.real, z.imag],
-        )
-
-    def touch(self, kind, *places):
-        points = [{"x": x, "y": y, "id": k} for k, (x, y) in enumerate(places)]
-        self.fingers.send("Input.dispatchTouchEvent", {"type": kind, "touchPoints": points})
-
-    def tap(self, z):
-        self.touch("touchStart", self.place(z))
-        self.touch("touchEnd")
-
-    def drag(self, start, *way):
-        self.touch("touchStart", self.place(start))
-        for z in way:
-            self.touch("touchMove", self.place(z))
-        self.touch("touchEnd")
-
-    def press(self, selector):
-        self.page.evaluate("s => document.querySelector('.surface').querySelector(s).click()", selector)
-
-    def tool(self, name):
-        self.press(f"[data-tool={name}]")
-
-    def enter(self, name, value):
-        self.page.evaluate(
-            """([name, value]) => { const box = document.querySelector(`[data-in=${name}]`); box.value = value;
-            box.dispatchEvent(new Event("input", { bubbles: true })); }""",
-            [name, str(value)],
-        )
-
-    def dot(self, z, name):
-        self.tool("point")
-        self.tap(z)
-        self.press(f"[data-name={name}]")
-
-    def line(self, tool, z, link=None, degrees=None):
-        self.tool(tool)
-        if link:
-            self.press(f"button[data-link='{link}']")
-        else:
-            self.enter("direction", degrees)
-        self.tap(z)
-
-    def crossing(self, z, name):
-        self.tool("intersection")
-        self.tap(z)
-        self.press(f"[data-name={name}]")
-
-    def measure(self, p, q, part):
-        self.tool("measure")
-        self.tap(p)
-        self.tap(q)
-        self.press(f"[data-put={part}]")
-
-    def fill(self, parts):
-        """Type what is no drawing."""
-        for part in parts:
-            box = self.page.locator(f"[name=a-{part.id}]")
-            if part.choices:
-                self.page.locator(f"[name=a-{part.id}][value='{right_answer(self.variant, part)}']").check()
-            else:
-                box.fill(right_answer(self.variant, part))
-
-    def answers(self):
-        """Texts of the boxes by part."""
-        form = self.page.evaluate("Array.from(new FormData(document.getElementById('sheet')))")
-        return {part.id: dict(form).get(f"a-{part.id}", "") for part in self.variant.parts}
-
-    def text(self):
-        return self.page.input_value("[name=a-drawing]")
-
-    def marks(self):
-        return mark(self.variant, self.answers())
-
-    def close(self):
-        assert self.faults == []
-        self.context.close()
+    with desk_at(tmp_path_factory.mktemp("site")) as desk:
+        yield desk
 
 
 @pytest.fixture
@@ -143,122 +34,12 @@ def pencil(desk):
     made = []
 
     def new(exercise, size="telephone", lang="en"):
-        made.append(Pencil(desk, exercise, size, lang))
+        made.append(Draughtsman(desk, exercise, size, lang))
         return made[-1]
 
     yield new
     for one in made:
         one.context.close()
-
-
-def reference(variant):
-    """Points, arrows and lengths of a right drawing, with the poles moved to where both drawings fit the paper."""
-    names = {part.id: part for part in variant.parts}
-    points = {i: complex(*variant.key.reference[p.quantity]) for i, p in names.items() if p.kind == "point"}
-    if "q" in points:  # two drawings: one above the other
-        first, second = list(points), list(points)
-        cut = first.index("q")
-        groups = [first[:cut], second[cut:]]
-    else:
-        groups = [list(points)]
-    high = variant.exercise.spec.drawing_mm[1]
-    moved, top = {}, high
-    for group in groups:
-        left = min(points[i].real for i in group)
-        upper = max(points[i].imag for i in group)
-        shift = complex(round(5 - left), round(top - 4 - upper))
-        moved |= {i: points[i] + shift for i in group}
-        top = min(moved[i].imag for i in group) - 4
-    return moved, names
-
-
-@pytest.mark.parametrize(("size", "lang"), PLACES)
-def test_each_drawn_exercise_gets_full_points_by_touch(pencil, size, lang):
-    failed = {}
-    for exercise in DRAWN:
-        hand = pencil(exercise, size, lang)
-        drawn = surface(handout(hand.variant))
-        points, names = reference(hand.variant)
-        if drawn.arrows:
-            _draw_arrows(hand, {i: complex(*hand.variant.key.reference[names[i].quantity]) for i in points})
-        else:
-            hand.press("[data-act=snap]")  # points may lie close to one another
-            for name, z in points.items():
-                hand.dot(z, name)
-            hand.press("[data-act=snap]")
-        measured = {q.id for q in drawn.numbers if q.unit in ("mm",)} - set(points)
-        hand.fill(part for i, part in names.items() if i not in points and i not in measured)
-        _measure(hand, measured)
-        marks = hand.marks()
-        if marks.points != sum(p.points for p in hand.variant.parts):
-            failed[exercise] = [
-                (m.part, hand.answers()[m.part], m.verdict) for m in marks.values() if m.verdict != "correct"
-            ]
-        assert too_wide(hand.page) == 0
-        hand.close()
-    assert failed == {}
-
-
-def _draw_arrows(hand, arrows):
-    hand.press("[data-act=snap]")
-    for name, z in arrows.items():
-        start = complex(80 - round(z.real / 2), 40 - round(z.imag / 2))
-        hand.tool("vector")
-        hand.drag(start, start + z / 2, start + z)
-        hand.press(f"[data-name={name}]")
-
-
-def _measure(hand, parts):
-    """Measure the lengths between the points that their symbols name."""
-    reference_ = hand.variant.key.reference
-    points, _ = reference(hand.variant)
-    for part in sorted(parts):
-        length = float(reference_[next(p.quantity for p in hand.variant.parts if p.id == part)])
-        pairs = [(p, q) for p in points for q in points if p < q]
-        best = min(pairs, key=lambda pair: abs(abs(points[pair[0]] - points[pair[1]]) - length))
-        hand.measure(points[best[0]], points[best[1]], part)
-
-
-def test_a_velocity_polygon_is_constructed_from_the_statement_alone(pencil):
-    """With set-square and compass: only what the sheet gives, and the links of its figure."""
-    hand = pencil("velocity_polygon")
-    given = hand.variant.given
-    links = {link.name: link.degrees for link in surface(handout(hand.variant)).links}
-    speed = abs(given["omega2"]) * given["r2"]
-    scale = next(k for k in (1, 2, 5, 10, 20, 50, 100, 200) if speed / k <= 35)
-    pole = 80 + 45j
-    hand.dot(pole, "p")
-    hand.enter("scale", scale)
-    hand.line("perpendicular", pole, link=links["OA"])
-    hand.tool("compass")
-    hand.enter("radius", f"{speed:.6g}/{scale}")
-    hand.tap(pole)
-    turn = math.copysign(90, given["omega2"])
-    a = pole + cmath.rect(speed / scale, math.radians(links["OA"] + turn))
-    hand.crossing(a, "a")
-    hand.line("perpendicular", a, link=links["AB"])
-    hand.line("perpendicular", pole, link=links["CB"])
-    u, v = (cmath.rect(1, math.radians(links[name] + 90)) for name in ("AB", "CB"))
-    b = a + u * ((pole - a).conjugate() * v).imag / (u.conjugate() * v).imag
-    hand.tool("intersection")
-    if not (4 < b.real < 156 and 4 < b.imag < 86):
-        hand.press("[data-act=zoom_out]")
-        hand.press("[data-act=zoom_out]")
-    hand.tap(b)
-    hand.press("[data-name=b]")
-    hand.measure(a, b, "ab")
-    hand.measure(pole, b, "pv_b")
-    hand.press("[data-put=v_B]")
-    hand.fill(p for p in hand.variant.parts if p.id.startswith(("known", "omega")))
-    drawn = StudentDrawing.parse(hand.text())
-    assert drawn.points["a"] == pytest.approx(a, abs=0.01)
-    assert drawn.points["b"] == pytest.approx(b, abs=0.05)
-    assert hand.marks().points == sum(p.points for p in hand.variant.parts)
-    hand.page.click(".practice-bar button")
-    hand.page.wait_for_selector("#summary .points")
-    points = hand.page.inner_text("#summary .points")
-    assert len(set(re.findall(r"\d+", points))) == 1, points
-    hand.close()
 
 
 def test_a_coupler_curve_is_traced_by_stepping_the_crank(pencil):
@@ -267,11 +48,9 @@ def test_a_coupler_curve_is_traced_by_stepping_the_crank(pencil):
     given = hand.variant.given
     O, side = 200 + 150j, 1 if given["mode"] == "open" else -1
     C = O + given["r1"]
-    hand.press("[data-act=snap]")
+    hand.tool("point")
     for z in (O, C):
-        hand.tool("point")
         hand.tap(z)
-    hand.press("[data-act=snap]")
     curve = []
     for step in (0, 40):
         crank = cmath.rect(given["r2"], math.radians(given["theta2"] + step))
@@ -279,51 +58,20 @@ def test_a_coupler_curve_is_traced_by_stepping_the_crank(pencil):
         corner = math.acos((BC**2 + given["r3"] ** 2 - given["r4"] ** 2) / (2 * BC * given["r3"]))
         AB = cmath.rect(given["r3"], cmath.phase(C - A) + side * corner)
         hand.line("parallel", O, degrees=given["theta2"] + step)
-        for centre, radius in ((O, given["r2"]), (A, given["r3"]), (C, given["r4"])):
-            hand.tool("compass")
-            hand.enter("radius", f"{radius:g}")
-            hand.tap(centre)
-            if centre == O:
-                hand.tool("intersection")
-                hand.tap(A)
-        hand.tool("intersection")
-        hand.tap(A + AB)
+        hand.circle(O, f"{given['r2']:g}")
+        hand.crossing(A)
+        hand.circle(A, f"{given['r3']:g}")
+        hand.circle(C, f"{given['r4']:g}")
+        hand.crossing(A + AB)
         if not step:
             hand.measure(A, A + AB, "theta3")
         hand.line("parallel", A, degrees=math.degrees(cmath.phase(AB)) + given["beta"])
         curve.append(A + AB / given["r3"] * cmath.rect(given["AP"], math.radians(given["beta"])))
-        hand.tool("compass")
-        hand.enter("radius", f"{given['AP']:g}")
-        hand.tap(A)
-        hand.tool("intersection")
-        hand.tap(curve[-1])
+        hand.circle(A, f"{given['AP']:g}")
+        hand.crossing(curve[-1])
     drawn = [item.at for item in StudentDrawing.parse(hand.text()).items.values() if item.kind == "point"]
     assert [min(abs(z - P) for z in drawn) < 0.5 for P in curve] == [True, True]
     assert hand.marks()["theta3"].verdict == "correct"
-    hand.close()
-
-
-@pytest.mark.parametrize(
-    ("exercise", "point", "wrong", "mistake"),
-    [
-        ("velocity_polygon", "a", lambda p, a: 2 * p - a, "a_sense"),
-        ("velocity_polygon", "a", lambda p, a: p + (a - p) * 1j, "a_direction"),
-        ("acceleration_polygon", "a", lambda p, a: p + 0.65 * (a - p), "a_length"),
-    ],
-)
-def test_a_mistake_that_is_drawn_is_named(pencil, exercise, point, wrong, mistake):
-    hand = pencil(exercise)
-    points, names = reference(hand.variant)
-    points[point] = wrong(points["p"], points[point])
-    middle = complex(
-        *((max(c) + min(c)) / 2 for c in zip(*((z.real, z.imag) for z in points.values()), strict=True))
-    )
-    hand.press("[data-act=snap]")
-    for name, z in points.items():
-        hand.dot(z - middle + 80 + 45j, name)
-    hand.fill(part for i, part in names.items() if i not in points)
-    named = {m.part: m.verdict for m in hand.marks().values()}
-    assert named[point] == f"mistake:{mistake}"
     hand.close()
 
 
