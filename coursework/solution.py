@@ -13,6 +13,8 @@
 * ``motion`` gives points that move, as a dict of :class:`Moving`, for animations;
 * ``FILM``, a :class:`Film`, states a picture of its own for the animation, where the statement's figure cannot move;
 * ``polygons`` gives the velocity and acceleration polygons, each a :class:`~coursework.figures.polygons.Polygon`;
+* ``overlay`` gives what a student drew over the right construction, where that is no polygon, as an
+  :class:`~coursework.figures.polygons.own_drawing.OwnDrawing`: a function of ``answers``, as those of a judge, and of quantities;
 * ``LOOPS`` states the closed loops as vectors, by name; their equations are quantities: :mod:`coursework.quantities.loops`;
   ``RATES`` gives the names of derivatives that do not follow from a quantity's own;
 * ``MECHANISM`` states bodies and joints, a :class:`~coursework.mechanics.Mechanism`: forces and motions follow from it;
@@ -43,6 +45,7 @@ from coursework.quantities.in_radians import in_radians
 from coursework.quantities.loops import Loop, quantities, stated
 
 if TYPE_CHECKING:
+    from coursework.figures.polygons.own_drawing import OwnDrawing
     from coursework.figures.polygons.polygon import Polygon
 
 
@@ -353,6 +356,7 @@ class Solution:
     structures: frozenset[str] = frozenset()  #: quantities that are no numbers: passed on as they come
     judges: Mapping[str, Callable[..., Any]] = field(default_factory=dict)
     polygons: Callable[..., Sequence[Polygon]] | None = None
+    overlay: Callable[..., OwnDrawing | None] | None = None
     loops: Mapping[str, Loop] = field(default_factory=dict)
     film: Film | None = None
     mechanism: Mechanism | None = None
@@ -390,7 +394,7 @@ class Solution:
         }
         mistakes = {k: f.__mistake__ for k, f in selected.items() if hasattr(f, "__mistake__")}
         judges = {k: f for k, f in selected.items() if hasattr(f, "__judge__")}
-        special = {"residual", "figure", "motion", "polygons"}
+        special = {"residual", "figure", "motion", "polygons", "overlay"}
         functions = {k: f for k, f in selected.items() if k not in {*special, *mistakes, *judges}}
         if not functions:
             raise BadCourse(f"{source} defines no quantity; a quantity is a function of its name")
@@ -428,6 +432,7 @@ class Solution:
             frozenset(getattr(module, "STRUCTURES", ())),
             judges,
             selected.get("polygons"),
+            selected.get("overlay"),
             loops,
             _film(source, module),
             _mechanism(source, module, graph),

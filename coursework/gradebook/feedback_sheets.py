@@ -17,6 +17,7 @@ from coursework.gradebook.book import Gradebook
 from coursework.gradebook.columns import own_columns
 from coursework.gradebook.feedback_form import USUAL, FeedbackForm, shows_solutions
 from coursework.gradebook.graded_sheet import Graded
+from coursework.gradebook.own_drawings import own_drawings
 from coursework.gradebook.scale import mark_of
 from coursework.issuing.assignment import text_in
 from coursework.issuing.identity import printed_columns
@@ -75,7 +76,8 @@ def feedback_sheet(
         else None
     )
     solution = answer_sheet(variant, graded.student) if telling.solutions else None
-    return FeedbackSheet(handout, tuple(lines), graded.points, graded.out_of, practice, solution)
+    drawings = own_drawings(variant, graded.lines) if telling.solutions else ()
+    return FeedbackSheet(handout, tuple(lines), graded.points, graded.out_of, practice, solution, drawings)
 
 
 def _line(variant: Variant, question: Question, line: Mark, right: str) -> FeedbackLine:

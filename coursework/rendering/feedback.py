@@ -10,7 +10,6 @@ from typing import NamedTuple
 from markupsafe import Markup
 
 from coursework.course.error_values import TAKEN
-from coursework.figures.polygons.own_drawing import own_drawing
 from coursework.figures.text import SIZE, LetterRun
 from coursework.language.numbers import localise, plain
 from coursework.language.words import listed, quoted, words
@@ -143,39 +142,6 @@ def note(line: FeedbackLine, lang: str, prefix: str = "") -> str:
     usual = words(lang)["marking"]["correct"].rpartition("}")[2]
     rest, mark, more = line.says.partition(usual)
     return renumbered(more.strip() if mark else rest, lang, prefix)
-
-
-_NUMBER = re.compile(r"[-−]?\d+(?:[.,]\d+)?(?:e[-+]?\d+)?")
-
-
-def own_drawings(sheet: FeedbackSheet) -> list[str]:
-    """Return the student's drawn polygons over the right ones, as SVG; none unless the solution may be shown."""
-    polygons = [construction.polygon for construction in sheet.solution.polygons] if sheet.solution else []
-    drawings = []
-    for polygon, lines in zip(polygons, _by_polygon(sheet, [p.pole for p in polygons]), strict=False):
-        read = {line.question.symbol: _numbers(line) for line in lines if line.question.kind == "point"}
-        points = {name: complex(*z) for name, z in read.items() if len(z) == 2 and name in polygon.points}
-        scales = [_numbers(line) for line in lines if line.question.unit.endswith("/mm")]
-        scale = scales[0][0] if scales and scales[0] else None
-        drawings.append(own_drawing(polygon, points, scale))
-    return [drawing for drawing in drawings if drawing]
-
-
-def _by_polygon(sheet: FeedbackSheet, poles: Sequence[str]) -> list[list[FeedbackLine]]:
-    """Return the lines of each polygon: the scale and the points of one stand before those of the next."""
-    groups: list[list[FeedbackLine]] = [[] for _ in poles]
-    place = 0
-    for line in sheet.lines:
-        if line.question.unit.endswith("/mm"):
-            place += 1
-        if 0 < place <= len(groups):
-            groups[place - 1].append(line)
-    return groups
-
-
-def _numbers(line: FeedbackLine) -> list[float]:
-    found = _NUMBER.findall(line.read_as.partition("mm")[0])
-    return [float(text.replace("−", "-").replace(",", ".")) for text in found]
 
 
 def hint(line: FeedbackLine, lang: str, prefix: str = "") -> str:

@@ -62,7 +62,6 @@ def environment_of(folders: tuple[Path, ...], lang: str) -> Environment:
         script=partial(_script, env),
         digest=partial(script_digest, env),
         surface=surface,
-        own_drawings=feedback.own_drawings,
     )
     return env
 

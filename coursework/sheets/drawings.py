@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
@@ -13,6 +14,7 @@ from coursework.quantities.graph import call_on_quantities, graph_of
 if TYPE_CHECKING:
     from coursework.course.variant import Variant
     from coursework.figures import Figure
+    from coursework.figures.polygons.own_drawing import OwnDrawing
 
 
 def solution_figure(variant: Variant) -> Figure | None:
@@ -22,11 +24,21 @@ def solution_figure(variant: Variant) -> Figure | None:
     return call_on_quantities(solution.figure, _quantities(variant, solution.figure))
 
 
-def _quantities(variant: Variant, function: Any) -> dict[str, Any]:
+def stated_overlay(variant: Variant, answers: Mapping[str, Any]) -> OwnDrawing | None:
+    """Return what the solution lays over its own construction: the drawing of these answers, by part as a judge has them;
+    None where there is nothing to show."""
+    overlay = variant.exercise.solution.overlay
+    if overlay is None:
+        return None
+    drawing: OwnDrawing | None = call_on_quantities(overlay, _quantities(variant, overlay, answers=answers))
+    return drawing
+
+
+def _quantities(variant: Variant, function: Any, **more: Any) -> dict[str, Any]:
     """Return the quantities of a variant's solution, and those besides that a function of the solution needs."""
-    values = dict(variant.walk)
-    more = tuple(n for n in graph_of(function).node(function.__name__).arguments if n not in values)
-    return {**values, **variant.quantities(more)}
+    values = dict(variant.walk) | more
+    others = tuple(n for n in graph_of(function).node(function.__name__).arguments if n not in values)
+    return {**values, **variant.quantities(others)}
 
 
 @lru_cache(maxsize=16)  # a variant is rendered in every format before the next

@@ -17,6 +17,7 @@ from coursework.course.lessons import Lesson as Lesson
 if TYPE_CHECKING:
     from coursework.figures import Figure, Picture
     from coursework.figures.polygons.construction import Construction
+    from coursework.figures.polygons.own_drawing import OwnDrawing
     from coursework.kinds.kind import ComponentBox
     from coursework.sheets.answer_pages import AnswerPage
 
@@ -182,6 +183,9 @@ class FeedbackSheet:
     out_of: float
     practice: Practice | None = None
     solution: AnswerSheet | None = None  #: of the student's own variant, once it may be shown
+    drawings: tuple[
+        OwnDrawing, ...
+    ] = ()  #: the student's over the right ones, once the solution may be shown
 
 
 @dataclass(frozen=True)

@@ -14,6 +14,7 @@ from coursework.degrees import from_radians, polar, wrap
 from coursework.figures import Figure, circle, ground_pivot, line, link, pin
 from coursework.figures.polygons import Polygon, Side
 from coursework.figures.polygons.hand_drawn import TOLERANCE_MM, on_paper
+from coursework.figures.polygons.own_drawing import DrawnStroke, OwnDrawing
 from coursework.kinematics.angles import Degrees
 from coursework.kinematics.four_bar import FourBar
 from coursework.marking.drawn_polygons import (
@@ -104,6 +105,7 @@ def theta4_crossed(_crossed):
 class _Drawn(NamedTuple):
     """A student's drawing, mm on paper: what the two circles start from, and the pins B of each index."""
 
+    scale: float
     O: complex
     A: complex
     C: complex
@@ -164,7 +166,26 @@ def _own_drawing(answers, frame, r3, r4):
     judged, _ = found
     here = {**judged.ideal, **judged.points}
     pins = {i: on_paper(*answers[f"b{i}"]) for i in ANGLES if f"b{i}" in answers}
-    return _Drawn(here["o"], here["a"], here["c"], r3 / judged.scale, r4 / judged.scale, pins)
+    return _Drawn(judged.scale, here["o"], here["a"], here["c"], r3 / judged.scale, r4 / judged.scale, pins)
+
+
+def overlay(answers, r1, r2, r3, r4, theta2):
+    """What the student drew, from their own O and scale, over both circles and the bars."""
+    own = _own_drawing(answers, _frame(polar(r2, theta2), r1), r3, r4)
+    if own is None:
+        return None
+    bars = r1, r2, r3, r4, theta2
+    images = _images(r1, r2, r3, theta2, _open(*bars), _crossed(*bars))
+    A, C, *pins = (own.O + complex(z) / own.scale for z in images)
+    drawn_ = [("a", own.O, own.A), ("c", own.O, own.C)]
+    drawn_ += [(f"b{i}", start, B) for i, B in own.B.items() for start in (own.A, own.C)]
+    return OwnDrawing(
+        [(own.O, A), (own.O, C), *((start, B) for B in pins for start in (A, C))],
+        [DrawnStroke(start, end, part) for part, start, end in drawn_ if part in answers],
+        {"O": own.O, "A": own.A, "C": own.C, **{f"B_{i}": B for i, B in own.B.items()}},
+        [(A, own.r3), (C, own.r4)],
+        bars=True,
+    )
 
 
 def _pins(own):

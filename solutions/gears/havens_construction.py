@@ -5,12 +5,14 @@ import numpy as np
 from coursework.degrees import polar
 from coursework.figures import Figure, circle, contact, ground_pivot, link, pin, slot_link, vector
 from coursework.figures.polygons.hand_drawn import LEAST_MM, MOST_MM, TOLERANCE_MM, on_paper, vector_fault
+from coursework.figures.polygons.own_drawing import DrawnStroke, OwnDrawing
 from coursework.marking.drawn_polygons import read_off, scale_for, to_paper
 from coursework.solution import Judged, given, judge, mistake, stable
 
 from ._havens import *
 
 VECTORS = ("v10", "v40", "v14", "v24", "v20", "v30")
+_NAMES = {name: rf"\vec V_{{{name[1]}/{name[2]}}}" for name in VECTORS}
 _WIDTH = 2 * TOLERANCE_MM
 
 
@@ -163,6 +165,33 @@ def _verdicts(answers, d, r2, r3, b, theta1, omega1):
     for name, vector_ in drawn.items():
         said[name] = _judged(name, vector_, drawn, right[name] / scale, pose, said)
     return said | _values(answers, pose, right, drawn, said, scale, r3)
+
+
+def overlay(answers, d, r2, r3, b, theta1, omega1, kv):
+    """The student's arrows over the right ones, all from one point: what slides along the guide, from what turns with it."""
+    pose = _pose(d, r2, r3, b, theta1)
+    right = dict(zip(VECTORS, _images(pose, r2, r3, omega1), strict=True))
+    drawn = {name: on_paper(*answers[name]) for name in VECTORS if name in answers}
+    stated = float(answers.get("kv", 0))
+    scale = stated if 0 < max(map(abs, right.values())) <= MOST_MM * stated else kv
+    right = {name: z / scale for name, z in right.items()}
+    if not drawn:
+        return None
+
+    def stroke(vectors, name):
+        of_guide = vectors.get("v40", right["v40"])
+        start = {"v14": of_guide, "v24": of_guide * pose[3] / pose[2]}.get(name, 0j)
+        return start, start + vectors[name]
+
+    own = {name: stroke(drawn, name) for name in drawn}
+    return OwnDrawing(
+        [stroke(right, name) for name in VECTORS],
+        [DrawnStroke(*ends, name) for name, ends in own.items()],
+        {
+            _NAMES[name]: end if name in ("v10", "v40", "v20", "v30") else (start + end) / 2
+            for name, (start, end) in own.items()
+        },
+    )
 
 
 #: The vectors from which each is constructed.

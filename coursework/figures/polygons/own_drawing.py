@@ -1,8 +1,10 @@
-"""Drawing of a student over the right construction, from the student's own pole and scale, as SVG."""
+"""Drawing of a student over the right construction, at the student's own place and scale."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
 
 from coursework.figures.ink import number
 from coursework.figures.plot import RIGHT, WRONG, page, put
@@ -16,10 +18,99 @@ _BENEATH = "#8a8f96"  #: colour of the right construction
 _HEAD = 2.6  #: length of the head of an arrow, mm
 
 
-def own_drawing(polygon: Polygon, points: Mapping[str, complex], scale: float | None) -> str:
-    """Return the drawn vectors over the right ones; empty unless the pole and another point are drawn.
+@dataclass(frozen=True)
+class DrawnStroke:
+    """Vector or bar that a student drew, from its start to its end, mm on paper."""
 
-    Right vectors are drawn solid and green, wrong ones dashed and red, the right construction thin and grey.
+    start: complex
+    end: complex
+    part: str = ""  #: whose mark tells whether it is right, where ``is_right`` does not
+    is_right: bool = False
+
+
+@dataclass(frozen=True)
+class OwnDrawing:
+    """Drawing of a student over the right construction: right strokes solid and green, wrong ones dashed and red, the right
+    construction thin and grey.
+
+    All is in mm on paper. ``right`` lists the right strokes by their ends, ``circles`` those of the construction by centre and
+    radius, ``points`` the student's points by their names, LaTeX. Strokes are arrows unless ``bars``.
+    """
+
+    right: Sequence[tuple[complex, complex]]
+    drawn: Sequence[DrawnStroke]
+    points: Mapping[str, complex] = field(default_factory=dict)
+    circles: Sequence[tuple[complex, float]] = ()
+    bars: bool = False
+
+    @cached_property
+    def _corners(self) -> tuple[complex, complex]:
+        ends = [z for pair in self.right for z in pair]
+        ends += [z for stroke in self.drawn for z in (stroke.start, stroke.end)]
+        ends += self.points.values()
+        low = complex(min(z.real for z in ends), min(z.imag for z in ends))
+        return low, complex(max(z.real for z in ends), max(z.imag for z in ends))
+
+    @property
+    def _shrink(self) -> float:
+        size = self._corners[1] - self._corners[0]
+        return min(1.0, _MOST_MM / max(size.real, size.imag, 1.0))
+
+    @property
+    def size_mm(self) -> tuple[float, float]:
+        """Width and height: true, smaller where that is wider than a page."""
+        size = self._shrink * (self._corners[1] - self._corners[0])
+        return round(size.real + 2 * _EDGE_MM, 2), round(size.imag + 2 * _EDGE_MM, 2)
+
+    def outlined_svg(self) -> str:
+        """Return the drawing as SVG, its letters as outlines."""
+        return page(self.size_mm, list(self._body()))
+
+    bare_svg = outlined_svg
+
+    def letters(self) -> tuple[()]:
+        """Return the letters that a typesetter has to add: none."""
+        return ()
+
+    def _at(self, z: complex) -> complex:
+        low, high = self._corners
+        shift = z - complex(low.real, high.imag)
+        return complex(_EDGE_MM + self._shrink * shift.real, _EDGE_MM - self._shrink * shift.imag)
+
+    def _body(self) -> Iterator[str]:
+        for centre, radius in self.circles:
+            c = self._at(centre)
+            yield (
+                f'<circle cx="{number(c.real)}" cy="{number(c.imag)}" r="{number(self._shrink * radius)}" fill="none" '
+                f'stroke="{_BENEATH}" stroke-width="0.18" stroke-dasharray="1 1"/>'
+            )
+        for start, end in self.right:
+            yield self._stroke(start, end, _BENEATH, 0.25)
+        for one in self.drawn:
+            colour, dash = (RIGHT, "none") if one.is_right else (WRONG, "2 1.2")
+            yield self._stroke(one.start, one.end, colour, 0.6, dash)
+        for name, z in self.points.items():
+            yield put(read(name), self._at(z) + complex(1.2, -1.2), "start")
+
+    def _stroke(self, start: complex, end: complex, colour: str, width: float, dash: str = "none") -> str:
+        """Return an arrow, or a bar; a point where it has no length."""
+        start, end = self._at(start), self._at(end)
+        if abs(end - start) < 0.05:
+            return f'<circle cx="{number(start.real)}" cy="{number(start.imag)}" r="0.7" fill="{colour}"/>'
+        line = (
+            f'<path d="M{number(start.real)} {number(start.imag)}L{number(end.real)} {number(end.imag)}" '
+            f'fill="none" stroke="{colour}" stroke-width="{number(width)}" stroke-dasharray="{dash}"/>'
+        )
+        if self.bars:
+            return line
+        back = -_HEAD * (end - start) / abs(end - start)
+        corners = (end, end + back * (1 + 0.3j), end + back * (1 - 0.3j))
+        tip = " ".join(f"{number(z.real)},{number(z.imag)}" for z in corners)
+        return f'{line}<polygon points="{tip}" fill="{colour}"/>'
+
+
+def drawn_polygon(polygon: Polygon, points: Mapping[str, complex], scale: float | None) -> OwnDrawing | None:
+    """Return the drawn vectors over the right ones.
 
     Parameters
     ----------
@@ -32,31 +123,22 @@ def own_drawing(polygon: Polygon, points: Mapping[str, complex], scale: float | 
 
     Returns
     -------
-    SVG of true size, smaller where that is wider than a page; an empty text for no drawing.
+    The drawing; None unless the pole and another point are drawn.
     """
     if polygon.pole not in points or len(points) < 2:
-        return ""
+        return None
     judged = judge_drawing(polygon, points, scale if scale and is_scale(polygon, scale) else None)
     pole, images = judged.points[polygon.pole], polygon.points
     right = {name: pole + (images[name] - images[polygon.pole]) / judged.scale for name in images}
-    everything = [*right.values(), *judged.points.values()]
-    low = complex(min(z.real for z in everything), min(z.imag for z in everything))
-    high = complex(max(z.real for z in everything), max(z.imag for z in everything))
-    shrink = min(1.0, _MOST_MM / max((high - low).real, (high - low).imag, 1.0))
-
-    def at(z: complex) -> complex:
-        return complex(_EDGE_MM + shrink * (z.real - low.real), _EDGE_MM + shrink * (high.imag - z.imag))
-
-    body = [_arrow(at(right[s.start]), at(right[s.end]), _BENEATH, 0.25) for s in polygon.sides]
-    for side in polygon.sides:
-        if side.start in judged.points and side.end in judged.points:
-            ends = at(judged.points[side.start]), at(judged.points[side.end])
-            is_right = _is_right(side, judged)
-            body.append(_arrow(*ends, RIGHT if is_right else WRONG, 0.6, "" if is_right else "2 1.2"))
-    for name, z in judged.points.items():
-        body.append(put(read(name), at(z) + complex(1.2, -1.2), "start"))
-    size = shrink * (high - low)
-    return page((size.real + 2 * _EDGE_MM, size.imag + 2 * _EDGE_MM), body)
+    return OwnDrawing(
+        [(right[side.start], right[side.end]) for side in polygon.sides],
+        [
+            DrawnStroke(judged.points[side.start], judged.points[side.end], "", _is_right(side, judged))
+            for side in polygon.sides
+            if side.start in judged.points and side.end in judged.points
+        ],
+        judged.points,
+    )
 
 
 def _is_right(side: Side, judged: JudgedDrawing) -> bool:
@@ -66,18 +148,3 @@ def _is_right(side: Side, judged: JudgedDrawing) -> bool:
         return not faulty
     faults = [judged.faults[point] for point in faulty if side in judged.polygon.hangs.get(point, ())]
     return all(fault.side is not None and fault.side != side for fault in faults)
-
-
-def _arrow(start: complex, end: complex, colour: str, width: float, dash: str = "") -> str:
-    """Return an arrow; a point where it has no length."""
-    if abs(end - start) < 0.05:
-        return f'<circle cx="{number(start.real)}" cy="{number(start.imag)}" r="0.7" fill="{colour}"/>'
-    back = -_HEAD * (end - start) / abs(end - start)
-    corners = " ".join(
-        f"{number(z.real)},{number(z.imag)}" for z in (end, end + back * (1 + 0.3j), end + back * (1 - 0.3j))
-    )
-    line = (
-        f'<path d="M{number(start.real)} {number(start.imag)}L{number(end.real)} {number(end.imag)}" '
-        f'fill="none" stroke="{colour}" stroke-width="{number(width)}" stroke-dasharray="{dash or "none"}"/>'
-    )
-    return f'{line}<polygon points="{corners}" fill="{colour}"/>'
