@@ -1,4 +1,4 @@
-"""Cam laws: the polynomial of degree five whose velocity and acceleration vanish at both ends.
+"""Cam laws: how a follower rises from rest to rest, and where over a turn it does.
 
 Numbers, arrays and numbers of mpmath; a lift is a share of the whole rise.
 """
@@ -8,6 +8,11 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
+
+from coursework.degrees import cos, sin
+
+#: From the roughest to the smoothest.
+LAWS = ("parabolic", "harmonic", "cycloidal", "polynomial_345", "polynomial_4567")
 
 
 def rise_345(u: Any) -> tuple[Any, Any, Any]:
@@ -65,3 +70,57 @@ def rise_dwell_return(u: Any, dwell: Any, turn: Any) -> tuple[Any, Any]:
     share = np.where(rising, u, 1.0 + dwell / 2.0 - away)[()]
     before = (after <= 0) == (abs(after) <= turn / 2.0)
     return np.minimum(np.maximum(share, 0.0), 1.0), np.where(before, 1.0, -1.0)[()]
+
+
+def rise(law: Any, u: Any) -> tuple[Any, Any, Any, Any]:
+    """Return the lift by one of the :data:`LAWS` and its first three derivatives by ``u``; at rest outside 0 to 1.
+
+    Parameters
+    ----------
+    law
+        Name of the law; a text or an array of texts that broadcasts.
+    u
+        Cam angle as a share of the angle of the rise; a scalar or an array.
+
+    Returns
+    -------
+    The lift as a share of the whole rise, its first, second and third derivatives, of the broadcast shape. Where a
+    derivative jumps, at both ends it is that of the rest.
+    """
+    moving = (u > 0) & (u < 1)
+    u = np.minimum(np.maximum(u, 0.0), 1.0)
+    left = 1.0 - u
+    both, odd, pi = u * left, 1.0 - 2.0 * u, np.pi + 0.0 * u
+    half, turn = 180.0 * u, 360.0 * u
+    laws = {
+        "parabolic": (
+            np.where(odd > 0, 2.0 * u**2, 1.0 - 2.0 * left**2),
+            4.0 * np.minimum(u, left),
+            4.0 * np.sign(odd),
+            0.0 * u,
+        ),
+        "harmonic": (
+            sin(half / 2.0) ** 2,
+            pi / 2.0 * sin(half),
+            pi**2 / 2.0 * cos(half),
+            -(pi**3) / 2.0 * sin(half),
+        ),
+        "cycloidal": (
+            u - sin(turn) / (2.0 * pi),
+            2.0 * sin(half) ** 2,
+            2.0 * pi * sin(turn),
+            4.0 * pi**2 * cos(turn),
+        ),
+        "polynomial_345": (*rise_345(u), 60.0 - 360.0 * both),
+        "polynomial_4567": (
+            u**4 * (35.0 - 84.0 * u + 70.0 * u**2 - 20.0 * u**3),
+            140.0 * both**3,
+            420.0 * both**2 * odd,
+            840.0 * both * (1.0 - 5.0 * both),
+        ),
+    }
+    found: list[Any] = [0.0 * u] * 4
+    for name, values in laws.items():
+        found = [np.where(law == name, value, other)[()] for value, other in zip(values, found, strict=True)]
+    lift, slope, *bends = found
+    return lift, slope, np.where(moving, bends[0], 0.0 * u)[()], np.where(moving, bends[1], 0.0 * u)[()]

@@ -20,7 +20,7 @@ def planets_fit(z1, z2):
 
 
 def planet_is_no_twin(z1, z2):
-    return abs(z1 - z2) >= 3
+    return (abs(z1 - z2) >= 3) & (z1 != 2 * z2)
 
 
 def figure(z1, z2):

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 from tables import each_row
 
-from coursework.kinematics.cams import rise_345, rise_dwell_return
+from coursework.kinematics.cams import LAWS, rise, rise_345, rise_dwell_return
 
 
 @each_row("u", [1e-9, 1e-3, 0.25, 0.5, 0.75, 1 - 1e-3, 1 - 2**-40])
@@ -54,3 +54,40 @@ def test_numbers_of_mpmath_keep_their_digits():
         assert way == 1
         assert abs(lift - mpmath.mpf(17) / 81) < mpmath.mpf("1e-48")
         assert abs(slope - mpmath.mpf(40) / 27) < mpmath.mpf("1e-48")
+
+
+def exact(law, x):
+    """As textbooks write them, in the digits at work."""
+    pi = mpmath.pi
+    return {
+        "parabolic": 2 * x**2 if x < 0.5 else 1 - 2 * (1 - x) ** 2,
+        "harmonic": (1 - mpmath.cos(pi * x)) / 2,
+        "cycloidal": x - mpmath.sin(2 * pi * x) / (2 * pi),
+        "polynomial_345": 10 * x**3 - 15 * x**4 + 6 * x**5,
+        "polynomial_4567": 35 * x**4 - 84 * x**5 + 70 * x**6 - 20 * x**7,
+    }[law]
+
+
+@pytest.mark.parametrize("law", LAWS)
+def test_each_law_and_its_derivatives_are_those_of_fifty_digits(law):
+    u = np.array([1e-3, 0.125, 0.3, 0.5 - 1e-3, 0.75, 1 - 1e-3])
+    with mpmath.workdps(50):
+        right = [[float(mpmath.diff(lambda y: exact(law, y), mpmath.mpf(x), n)) for x in u] for n in range(4)]
+    for found, row in zip(rise(law, u), right, strict=True):
+        np.testing.assert_allclose(found, row, rtol=1e-12, atol=1e-12)
+
+
+@pytest.mark.parametrize(("law", "smooth"), list(zip(LAWS, (1, 1, 2, 2, 3), strict=True)))
+def test_a_law_rests_outside_and_starts_as_smoothly_as_its_kind_says(law, smooth):
+    outside, inside = rise(law, np.array([-1.0, 0.0, 1.0, 2.0])), rise(law, np.array([1e-9, 1 - 1e-9]))
+    np.testing.assert_array_equal(outside[0], [0, 0, 1, 1])
+    np.testing.assert_allclose(np.array(outside[1:]), 0, atol=1e-15)
+    assert [np.all(abs(inside[n]) < 1e-5) for n in range(1, smooth + 1)] == [True] * smooth
+    assert smooth == 3 or np.all(abs(inside[smooth + 1]) > 1)
+
+
+def test_laws_of_many_cams_are_found_at_once():
+    u = np.array([0.1, 0.4, 0.6, 0.8, 0.9])
+    together = rise(np.array(LAWS), u)
+    for k, law in enumerate(LAWS):
+        assert [row[k] for row in together] == pytest.approx([float(x) for x in rise(law, u[k])], rel=1e-15)
