@@ -107,6 +107,8 @@ PLACES = {
     "mechanical_advantage_slider": ("theta2", "theta2", ("p", "q"), crank_rod("b")),
     "quick_return_offset": ("theta2", "theta2", ("p", "q"), crank_rod("c")),
     "four_bar_motion": ("theta2", "theta2", ("theta3",), four_bar),
+    "instant_centres": ("theta2", "theta2", ("theta3",), four_bar),
+    "instant_centres_slider": ("theta2", "theta2", ("p", "q"), crank_rod("b")),
     "four_bar_torque": ("theta2", "theta2", ("theta3",), four_bar),
     "mechanical_advantage": ("theta2", "theta2", ("theta3",), four_bar),
     "coupler_curve": ("theta2", "theta2", ("theta3",), coupler_curve),

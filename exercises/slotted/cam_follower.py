@@ -99,7 +99,7 @@ def figure(law, h, beta, delta, Rb, Rr, e, theta, lifts):
         line(O, 1j * 0.95 * Rb, dashed=True),
         angle_mark(O, 90, 90 + theta, r"\theta", radius=0.5 * Rb),
         wheel(C, Rr),
-        link(C, high + 0.3j * Rb),
+        link(C, C + 1j * (h + 1.4 * Rr + 1.1 * Rb)),
         slider((low + high) / 2, 90),
         rail(low, high),
         rail(high, low),

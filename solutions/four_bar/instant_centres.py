@@ -9,6 +9,7 @@ import numpy as np
 from coursework.degrees import polar, sin
 from coursework.errors import Undefined
 from coursework.figures import Figure, ground_pivot, line, link, pin, point, vector
+from coursework.figures.polygons import crank_v, polygon_of_velocities, two_bars_v
 from coursework.kinematics.dyads import side_of
 from coursework.solution import formula, given, mistake, stable
 
@@ -142,6 +143,16 @@ def mean_of_the_ends(r2, omega2, r4, omega4):
 @mistake("mode")
 def other_mode(mode):
     return np.where(side_of(mode) > 0, "crossed", "open")
+
+
+def polygons(r2, r3, r4, theta2, theta3, theta4, omega2, omega3, omega4):
+    """The same velocities without any centre."""
+    AB, CB = polar(r3, theta3), polar(r4, theta4)
+    return (
+        polygon_of_velocities(
+            crank_v("A", "OA", polar(r2, theta2), omega2), two_bars_v("B", "A", "C", AB, omega3, CB, omega4)
+        ),
+    )
 
 
 def figure(r1, r2, theta2, r3, theta3, omega2, omega3, x24, d13):

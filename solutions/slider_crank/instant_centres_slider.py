@@ -8,6 +8,7 @@ import numpy as np
 from coursework.degrees import atan2, polar, sin, sqrt, tan
 from coursework.errors import Undefined
 from coursework.figures import Figure, ground_pivot, line, link, pin, point, slider, vector
+from coursework.figures.polygons import crank_v, polygon_of_velocities, slider_v
 from coursework.kinematics.angles import Degrees
 from coursework.kinematics.slider_crank import SliderCrank
 from coursework.mechanics import Body, Mechanism, Slide
@@ -146,6 +147,15 @@ def about_A(r3, omega3):
 @mistake("v_M")
 def mean_of_the_ends(r2, omega2, v_B):
     return (r2 * abs(omega2) + abs(v_B)) / 2
+
+
+def polygons(r2, theta2, omega2, p, q, omega3, v_B):
+    """The same velocities without any centre."""
+    return (
+        polygon_of_velocities(
+            crank_v("A", "OA", polar(r2, theta2), omega2), slider_v("B", "A", q + 1j * p, omega3, v_B)
+        ),
+    )
 
 
 def figure(r2, theta2, p, q, x_B, e, omega2, omega3, v_B, y13, y24):

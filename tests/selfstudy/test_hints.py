@@ -38,7 +38,7 @@ def test_another_scale_of_the_drawing_leaves_symbols_in_the_hints(lang, here):
 
 
 #: Of a law that the statement gives, and of its derivatives.
-COEFFICIENTS = {"flat_faced_cam": (8, 10, 15, 30, 36, 60)}
+COEFFICIENTS = {"cam_follower": (8,), "flat_faced_cam": (8, 10, 15, 30, 36, 60)}
 
 
 @every_exercise

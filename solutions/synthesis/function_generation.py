@@ -1,0 +1,338 @@
+"""Function generation: solution. Freudenstein's equation is linear in three ratios of lengths: three points give them.
+
+The judge moves the student's own linkage through the range, in the assembly that suits it better.
+"""
+
+import numpy as np
+
+from coursework.degrees import cos, polar, sin, sqrt, wrap
+from coursework.figures import Figure, ground_pivot, line, link, pin
+from coursework.solution import Judged, formula, given, judge, mistake
+
+UNITS = {
+    "a": "1", "b": "1", "x2": "1", "x3": "1", "y1": "1", "y2": "1", "y3": "1", "ya": "1", "yb": "1",
+    "theta2_2": "deg", "theta2_3": "deg", "theta4_1": "deg", "theta4_3": "deg",
+    "p1": "1", "p3": "1", "q1": "1", "q3": "1", "w1": "1", "w3": "1", "K1": "1", "K2": "1", "K3": "1",
+    "deviation": "deg", "least_transmission": "deg",
+}  # fmt: skip
+SYMBOLS = {
+    "x2": "x_2", "x3": "x_3", "ya": "f(a)", "yb": "f(b)", "y1": "y_1", "y2": "y_2", "y3": "y_3",
+    "theta2_2": r"\theta_2^2", "theta2_3": r"\theta_2^3", "theta4_1": r"\theta_4^1", "theta4_3": r"\theta_4^3",
+    "p1": "p_1", "p3": "p_3", "q1": "q_1", "q3": "q_3", "w1": "w_1", "w3": "w_3",
+    "deviation": r"\varepsilon_{\max}", "least_transmission": r"\mu_{\min}",
+}  # fmt: skip
+_RANGES = {"logarithm": (1.0, 2.0), "inverse": (1.0, 2.0), "sine": (0.0, 1.0), "root": (1.0, 4.0)}
+_THIRD = 30  #: degrees, of the first precision point on Chebyshev's half circle
+
+
+def _of(law, x):
+    """The function."""
+    positive = np.maximum(x, 0.5)
+    values = {
+        "logarithm": np.log(positive) / np.log(10.0),
+        "inverse": 1 / positive,
+        "root": sqrt(positive),
+    }
+    found = sin(90 * x)
+    for name, value in values.items():
+        found = np.where(law == name, value, found)[()]
+    return found
+
+
+def _end(law, which):
+    found = 0.0
+    for name, ends in _RANGES.items():
+        found = np.where(law == name, ends[which], found)[()]
+    return found
+
+
+def a(law):
+    return _end(law, 0)
+
+
+def b(law):
+    return _end(law, 1)
+
+
+@formula(r"\frac{<a> + <b>}{2} - \frac{<b> - <a>}{2} \times \cos 30^{\circ}")
+def x1(a, b):
+    return (a + b) / 2 - (b - a) / 2 * cos(30)
+
+
+def x2(a, b):
+    return (a + b) / 2
+
+
+@formula(r"\frac{<a> + <b>}{2} + \frac{<b> - <a>}{2} \times \cos 30^{\circ}")
+def x3(a, b):
+    return (a + b) / 2 + (b - a) / 2 * cos(30)
+
+
+def ya(law, a):
+    return _of(law, a)
+
+
+def yb(law, b):
+    return _of(law, b)
+
+
+def y1(law, x1):
+    return _of(law, x1)
+
+
+def y2(law, x2):
+    return _of(law, x2)
+
+
+def y3(law, x3):
+    return _of(law, x3)
+
+
+def theta2_1(theta2_0, range2, x1, a, b):
+    return theta2_0 + range2 * (x1 - a) / (b - a)
+
+
+def theta2_2(theta2_0, range2, x2, a, b):
+    return theta2_0 + range2 * (x2 - a) / (b - a)
+
+
+def theta2_3(theta2_0, range2, x3, a, b):
+    return theta2_0 + range2 * (x3 - a) / (b - a)
+
+
+def theta4_1(theta4_0, range4, y1, ya, yb):
+    return theta4_0 + range4 * (y1 - ya) / (yb - ya)
+
+
+def theta4_2(theta4_0, range4, y2, ya, yb):
+    return theta4_0 + range4 * (y2 - ya) / (yb - ya)
+
+
+def theta4_3(theta4_0, range4, y3, ya, yb):
+    return theta4_0 + range4 * (y3 - ya) / (yb - ya)
+
+
+def p1(theta4_1, theta4_2):
+    return cos(theta4_1) - cos(theta4_2)
+
+
+def p3(theta4_3, theta4_2):
+    return cos(theta4_3) - cos(theta4_2)
+
+
+def q1(theta2_1, theta2_2):
+    return cos(theta2_1) - cos(theta2_2)
+
+
+def q3(theta2_3, theta2_2):
+    return cos(theta2_3) - cos(theta2_2)
+
+
+def w1(theta2_1, theta4_1, theta2_2, theta4_2):
+    return cos(theta2_1 - theta4_1) - cos(theta2_2 - theta4_2)
+
+
+def w3(theta2_3, theta4_3, theta2_2, theta4_2):
+    return cos(theta2_3 - theta4_3) - cos(theta2_2 - theta4_2)
+
+
+def K1(p1, p3, q1, q3, w1, w3):
+    return (w1 * q3 - w3 * q1) / (p1 * q3 - p3 * q1)
+
+
+def K2(p1, p3, q1, q3, w1, w3):
+    return (w1 * p3 - w3 * p1) / (p1 * q3 - p3 * q1)
+
+
+def K3(K1, K2, theta2_2, theta4_2):
+    """The equation itself at the second point."""
+    return cos(theta2_2 - theta4_2) - K1 * cos(theta4_2) + K2 * cos(theta2_2)
+
+
+def r2(r1, K1):
+    return r1 / K1
+
+
+def r4(r1, K2):
+    return r1 / K2
+
+
+def r3(r1, r2, r4, K3):
+    return sqrt(r1**2 + r2**2 + r4**2 - 2 * r2 * r4 * K3)
+
+
+_SHARES = np.linspace(0.0, 1.0, 181)
+
+
+def _motion(r1, r2, r3, r4, law, theta2_0, range2, theta4_0, range4):
+    """Over the range, in both assemblies: by how much the rocker is ahead of where it should be, and its angle with the
+    coupler; degrees, shape (2, ..., 181), NaN where the linkage does not close."""
+    columns = (
+        np.asarray(v, dtype=float)[..., None] for v in (r1, r2, r3, r4, theta2_0, range2, theta4_0, range4)
+    )
+    r1, r2, r3, r4, theta2_0, range2, theta4_0, range4 = columns
+    law = np.asarray(law)[..., None]
+    a, b = _end(law, 0), _end(law, 1)
+    rise = (_of(law, a + (b - a) * _SHARES) - _of(law, a)) / (_of(law, b) - _of(law, a))
+    wanted = theta4_0 + range4 * rise
+    A = polar(r2, theta2_0 + range2 * _SHARES)
+    line_ = r1 - A
+    apart = abs(line_)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        corner = np.arccos((apart**2 + r4**2 - r3**2) / (2 * apart * r4))
+        transmission = np.degrees(np.arccos((r3**2 + r4**2 - apart**2) / (2 * r3 * r4)))
+    # At C, from the direction of A to that of B.
+    found = [np.degrees(np.angle(-line_) + side * corner) for side in (-1, 1)]
+    return np.stack([wrap(theta4 - wanted) for theta4 in found]), np.broadcast_to(transmission, wanted.shape)
+
+
+def _worst(*lengths_and_demands):
+    """In the assembly that is nearer."""
+    ahead, _ = _motion(*lengths_and_demands)
+    return np.nan_to_num(abs(ahead).max(axis=-1).min(axis=0), nan=_OPEN)[()]
+
+
+_OPEN = 180.0  #: of a linkage that does not close all along
+
+
+def worst(r1, r2, r3, r4, law, theta2_0, range2, theta4_0, range4):
+    """By the motion of the linkage, degree by degree."""
+    return _worst(r1, r2, r3, r4, law, theta2_0, range2, theta4_0, range4)
+
+
+def least_transmission(r1, r2, r3, r4, law, theta2_0, range2, theta4_0, range4):
+    _, transmission = _motion(r1, r2, r3, r4, law, theta2_0, range2, theta4_0, range4)
+    return np.minimum(transmission, 180 - transmission).min(axis=-1)[()]
+
+
+LENGTHS = ("r2", "r3", "r4")
+
+
+@judge
+def generates_the_function(answers, r1, law, theta2_0, range2, theta4_0, range4, delta, K1, K2):
+    """Any linkage of this frame, by its own motion; its structural error as it really is."""
+    own = {name: float(answers[name]) for name in LENGTHS if name in answers}
+    if len(own) < 3:
+        return {}
+    demands = (law, theta2_0, range2, theta4_0, range4)
+    verdict, deviation = _judged(r1, **own, demands=demands, delta=delta, K1=K1, K2=K2)
+    said = dict.fromkeys(own, verdict)
+    if "worst" in answers:
+        said["worst"] = _error(float(answers["worst"]), deviation, verdict.share < 1)
+    return said
+
+
+def _judged(r1, r2, r3, r4, demands, delta, K1, K2):
+    if min(r2, r3, r4) <= 0:
+        return Judged(0.0, "does_not_close"), _OPEN
+    deviation = float(_worst(r1, r2, r3, r4, *demands))
+    found = {"deviation": deviation} if deviation < _OPEN else {}
+    if deviation <= delta:
+        return Judged(1.0, "", found), deviation
+    if abs(r2 - r1 * K1) < 0.01 * r2 and abs(r4 - r1 * K2) < 0.01 * r4:
+        return Judged(0.0, "ratios_upside_down", found), deviation
+    if float(_worst(r1, r4, r3, r2, *demands)) <= delta:
+        return Judged(0.0, "crank_and_rocker_exchanged", found), deviation
+    if deviation == _OPEN:
+        return Judged(0.0, "does_not_close"), deviation
+    return Judged(0.5 if deviation <= 2 * delta else 0.0, "deviates", found), deviation
+
+
+def _error(said, deviation, is_wrong):
+    right = deviation < _OPEN and abs(abs(said) - deviation) <= max(0.1, deviation / 20)
+    return Judged(follows=is_wrong) if right else Judged(0.0)
+
+
+@mistake("x1")
+def equal_spacing(a, b):
+    """A quarter of the range."""
+    return a + (b - a) / 4
+
+
+@mistake("x1")
+def end_of_the_range(a):
+    return a
+
+
+@mistake("theta2_1", kind="term")
+def start_left_out(range2, x1, a, b):
+    return range2 * (x1 - a) / (b - a)
+
+
+@mistake("theta4_2")
+def in_proportion_to_x(theta4_0, range4, x2, a, b):
+    return theta4_0 + range4 * (x2 - a) / (b - a)
+
+
+@mistake("r2", "r4")
+def ratios_upside_down(r1, K1, K2):
+    return r1 * K1, r1 * K2
+
+
+@mistake("r2", "r4", kind="exchanged")
+def crank_and_rocker_exchanged(r2, r4):
+    return r4, r2
+
+
+@mistake("r2", "r3", "r4")
+def deviates(r1):
+    """A parallelogram, whose rocker turns as its crank does."""
+    return r1 / 2, r1, r1 / 2
+
+
+@mistake("r3")
+def does_not_close(r1, r2, r4):
+    return (r1 + r2 + r4) / 50
+
+
+def figure(r1, r2, r3, r4, theta2_1, theta4_1, theta2_2, theta4_2, theta2_3, theta4_3):
+    """The linkage found, at its three precision points."""
+    O, C = 0j, complex(r1)
+    first, middle, last = (
+        (polar(r2, theta2), C + polar(r4, theta4))
+        for theta2, theta4 in ((theta2_1, theta4_1), (theta2_2, theta4_2), (theta2_3, theta4_3))
+    )
+    return Figure(
+        line(O, C, dashed=True, label="r_1"),
+        *(line(*ends, thin=False) for A, B in (first, last) for ends in ((O, A), (A, B), (C, B))),
+        link(O, middle[0], label="r_2"),
+        link(*middle, label="r_3"),
+        link(C, middle[1], label="r_4"),
+        ground_pivot(O, "O"),
+        ground_pivot(C, "C"),
+        *(pin(A, f"A_{k}") for k, (A, _) in enumerate((first, middle, last), 1)),
+        *(pin(B, f"B_{k}") for k, (_, B) in enumerate((first, middle, last), 1)),
+    )
+
+
+def residual(law, r1, theta2_0, range2, theta4_0, range4, r2, r3, r4, worst):
+    """At each precision point the pins are as far apart as the coupler is long; the worst of a finer motion."""
+    ends = {"logarithm": (1, 2), "inverse": (1, 2), "sine": (0, 1), "root": (1, 4)}
+    start, stop = (np.select([law == name for name in ends], [e[k] for e in ends.values()]) for k in (0, 1))
+
+    def f(x):
+        with np.errstate(divide="ignore"):
+            values = (np.log10(x), 1 / x, np.sin(np.pi / 2 * x), x**0.5)
+        return np.select([law == name for name in ends], values)
+
+    found = []
+    for share in (0.5 - 0.75**0.5 / 2, 0.5, 0.5 + 0.75**0.5 / 2):
+        x = start + (stop - start) * share
+        rise = (f(x) - f(start)) / (f(stop) - f(start))
+        A = r2 * np.exp(1j * np.radians(theta2_0 + range2 * share))
+        B = r1 + r4 * np.exp(1j * np.radians(theta4_0 + range4 * rise))
+        found.append((abs(B - A) - r3) / (r1 + r2 + r3 + r4))
+    return tuple(found)
+
+
+KNOWN = (
+    # The middle of the range, its cosines of 30 degrees to both sides.
+    given(law="logarithm", theta2_0=40, range2=60).gives(x1=1.5 - 3**0.5 / 4, theta2_1=70 - 15 * 3**0.5),
+    given(law="sine").gives(x1=0.5 - 3**0.5 / 4, x3=0.5 + 3**0.5 / 4),
+    # A parallelogram turns its rocker as its crank: with these angles at three points, K3 is the cosine of nothing.
+    given(
+        r1=100, theta2_1=40, theta4_1=40, theta2_2=70, theta4_2=70, theta2_3=100, theta4_3=100, K1=2, K2=2
+    ).gives(K3=1, r2=50, r4=50, r3=100),
+    # Between 1 and 4 the root goes from 1 to 2.
+    given(law="root", theta4_0=50, range4=70).gives(ya=1, yb=2, theta4_2=50 + 70 * (2.5**0.5 - 1)),
+)
