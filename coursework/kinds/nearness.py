@@ -25,7 +25,8 @@ def gaps(values: np.ndarray, others: Any, turn: float) -> np.ndarray:
     """Return the distances of values from others, element by element; modulo a ``turn`` where that is not
     0."""
     gap = np.abs(values - others)
-    return np.abs(gap - turn * np.rint(gap / turn)) if turn else gap
+    with np.errstate(invalid="ignore"):  # an infinite gap has no place in a turn
+        return np.abs(gap - turn * np.rint(gap / turn)) if turn else gap
 
 
 def is_fine(value: float, half_width: float) -> bool:

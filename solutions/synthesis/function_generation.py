@@ -6,8 +6,9 @@ The judge moves the student's own linkage through the range, in the assembly tha
 import numpy as np
 
 from coursework.degrees import cos, polar, sin, sqrt, wrap
+from coursework.errors import Undefined
 from coursework.figures import Figure, ground_pivot, line, link, pin
-from coursework.solution import Judged, formula, given, judge, mistake
+from coursework.solution import Judged, formula, given, judge, mistake, stable
 
 UNITS = {
     "a": "1", "b": "1", "x2": "1", "x3": "1", "y1": "1", "y2": "1", "y3": "1", "ya": "1", "yb": "1",
@@ -22,7 +23,7 @@ SYMBOLS = {
     "deviation": r"\varepsilon_{\max}", "least_transmission": r"\mu_{\min}",
 }  # fmt: skip
 _RANGES = {"logarithm": (1.0, 2.0), "inverse": (1.0, 2.0), "sine": (0.0, 1.0), "root": (1.0, 4.0)}
-_THIRD = 30  #: degrees, of the first precision point on Chebyshev's half circle
+_TURN = 360.0
 
 
 def _of(law, x):
@@ -88,50 +89,88 @@ def y3(law, x3):
     return _of(law, x3)
 
 
+def _sweep(degrees):
+    """A range within a turn, which is not the same as one that is a turn longer."""
+    if np.ndim(degrees) == 0 and abs(degrees) >= _TURN:
+        raise Undefined(f"crank and rocker are to turn by less than a turn; found {degrees:g} degrees")
+    return np.where(abs(degrees) < _TURN, degrees, np.nan)[()]
+
+
+def _sweep2(range2):
+    return _sweep(range2)
+
+
+def _sweep4(range4):
+    return _sweep(range4)
+
+
+@stable(lambda theta2_0, _sweep2, x1, a, b: wrap(wrap(theta2_0) + _sweep2 * (x1 - a) / (b - a)))
 def theta2_1(theta2_0, range2, x1, a, b):
-    return theta2_0 + range2 * (x1 - a) / (b - a)
+    return wrap(theta2_0 + range2 * (x1 - a) / (b - a))
 
 
+@stable(lambda theta2_0, _sweep2, x2, a, b: wrap(wrap(theta2_0) + _sweep2 * (x2 - a) / (b - a)))
 def theta2_2(theta2_0, range2, x2, a, b):
-    return theta2_0 + range2 * (x2 - a) / (b - a)
+    return wrap(theta2_0 + range2 * (x2 - a) / (b - a))
 
 
+@stable(lambda theta2_0, _sweep2, x3, a, b: wrap(wrap(theta2_0) + _sweep2 * (x3 - a) / (b - a)))
 def theta2_3(theta2_0, range2, x3, a, b):
-    return theta2_0 + range2 * (x3 - a) / (b - a)
+    return wrap(theta2_0 + range2 * (x3 - a) / (b - a))
 
 
+@stable(lambda theta4_0, _sweep4, y1, ya, yb: wrap(wrap(theta4_0) + _sweep4 * (y1 - ya) / (yb - ya)))
 def theta4_1(theta4_0, range4, y1, ya, yb):
-    return theta4_0 + range4 * (y1 - ya) / (yb - ya)
+    return wrap(theta4_0 + range4 * (y1 - ya) / (yb - ya))
 
 
+@stable(lambda theta4_0, _sweep4, y2, ya, yb: wrap(wrap(theta4_0) + _sweep4 * (y2 - ya) / (yb - ya)))
 def theta4_2(theta4_0, range4, y2, ya, yb):
-    return theta4_0 + range4 * (y2 - ya) / (yb - ya)
+    return wrap(theta4_0 + range4 * (y2 - ya) / (yb - ya))
 
 
+@stable(lambda theta4_0, _sweep4, y3, ya, yb: wrap(wrap(theta4_0) + _sweep4 * (y3 - ya) / (yb - ya)))
 def theta4_3(theta4_0, range4, y3, ya, yb):
-    return theta4_0 + range4 * (y3 - ya) / (yb - ya)
+    return wrap(theta4_0 + range4 * (y3 - ya) / (yb - ya))
 
 
+def _steps(range2, range4, y1, y2, y3, ya, yb):
+    """By how much crank and rocker turn from the second precision point to the first and to the third."""
+    by_crank = range2 * sqrt(3 + 0 * range2) / 4
+    return (-by_crank, range4 * (y1 - y2) / (yb - ya)), (by_crank, range4 * (y3 - y2) / (yb - ya))
+
+
+def _cosines(angle, step):
+    """How much the cosine changes from an angle on; in digits that a small step keeps."""
+    return -2 * sin(angle + step / 2) * sin(step / 2)
+
+
+@stable(lambda theta4_2, _steps: _cosines(theta4_2, _steps[0][1]))
 def p1(theta4_1, theta4_2):
     return cos(theta4_1) - cos(theta4_2)
 
 
+@stable(lambda theta4_2, _steps: _cosines(theta4_2, _steps[1][1]))
 def p3(theta4_3, theta4_2):
     return cos(theta4_3) - cos(theta4_2)
 
 
+@stable(lambda theta2_2, _steps: _cosines(theta2_2, _steps[0][0]))
 def q1(theta2_1, theta2_2):
     return cos(theta2_1) - cos(theta2_2)
 
 
+@stable(lambda theta2_2, _steps: _cosines(theta2_2, _steps[1][0]))
 def q3(theta2_3, theta2_2):
     return cos(theta2_3) - cos(theta2_2)
 
 
+@stable(lambda theta2_2, theta4_2, _steps: _cosines(theta2_2 - theta4_2, _steps[0][0] - _steps[0][1]))
 def w1(theta2_1, theta4_1, theta2_2, theta4_2):
     return cos(theta2_1 - theta4_1) - cos(theta2_2 - theta4_2)
 
 
+@stable(lambda theta2_2, theta4_2, _steps: _cosines(theta2_2 - theta4_2, _steps[1][0] - _steps[1][1]))
 def w3(theta2_3, theta4_3, theta2_2, theta4_2):
     return cos(theta2_3 - theta4_3) - cos(theta2_2 - theta4_2)
 
@@ -157,6 +196,7 @@ def r4(r1, K2):
     return r1 / K2
 
 
+@stable(lambda r1, K1, K2, theta2_2, theta4_2: abs(r1 + polar(r1 / K2, theta4_2) - polar(r1 / K1, theta2_2)))
 def r3(r1, r2, r4, K3):
     return sqrt(r1**2 + r2**2 + r4**2 - 2 * r2 * r4 * K3)
 
@@ -195,9 +235,9 @@ def _worst(*lengths_and_demands):
 _OPEN = 180.0  #: of a linkage that does not close all along
 
 
-def worst(r1, r2, r3, r4, law, theta2_0, range2, theta4_0, range4):
+def worst(r1, r2, r3, r4, law, theta2_0, _sweep2, theta4_0, _sweep4):
     """By the motion of the linkage, degree by degree."""
-    return _worst(r1, r2, r3, r4, law, theta2_0, range2, theta4_0, range4)
+    return _worst(r1, r2, r3, r4, law, wrap(theta2_0), _sweep2, wrap(theta4_0), _sweep4)
 
 
 def least_transmission(r1, r2, r3, r4, law, theta2_0, range2, theta4_0, range4):
@@ -261,7 +301,7 @@ def start_left_out(range2, x1, a, b):
 
 @mistake("theta4_2")
 def in_proportion_to_x(theta4_0, range4, x2, a, b):
-    return theta4_0 + range4 * (x2 - a) / (b - a)
+    return wrap(wrap(theta4_0) + range4 * (x2 - a) / (b - a))
 
 
 @mistake("r2", "r4")
