@@ -71,6 +71,43 @@ def overlapping(figure):
     ]
 
 
+def white_to_lines(figure):
+    """The least white between a label and a line that it does not meet, mm."""
+    drawing = ET.fromstring(figure.svg()).findall(SVG + "g")[0]
+    found = []
+    for item, points in zip(drawing, strokes(figure), strict=True):
+        half = float(item.get("stroke-width", 0)) / 2
+        for box in figure.labels():
+            middle, side = complex(box.x, box.y) + complex(box.width, box.height) / 2, (box.width, box.height)
+            corners = [middle + complex(side[0] * x, side[1] * y) / 2 for x in (-1, 1) for y in (-1, 1)]
+            for a, b in pairwise(points):
+                away = [
+                    abs(z.real - middle.real) - side[0] / 2 + 1j * (abs(z.imag - middle.imag) - side[1] / 2)
+                    for z in (a, b)
+                ]
+                found += [math.hypot(max(z.real, 0), max(z.imag, 0)) - half for z in away]
+                found += [abs(z - a - _part(z - a, b - a) * (b - a)) - half for z in corners]
+    return min(found)
+
+
+def _part(z, way):
+    """How far along a way what is nearest to z lies, from 0 to 1."""
+    return min(1, max(0, (z * way.conjugate()).real / (abs(way) ** 2 or 1)))
+
+
+def white_between_labels(figure):
+    """The least white between two labels, across or up, mm."""
+    boxes = figure.labels()
+    return min(
+        max(
+            max(a.x, b.x) - min(a.x + a.width, b.x + b.width),
+            max(a.y, b.y) - min(a.y + a.height, b.y + b.height),
+        )
+        for k, a in enumerate(boxes)
+        for b in boxes[:k]
+    )
+
+
 def assert_readable(figure):
     assert overlapping(figure) == []
     assert crossed(figure) == []

@@ -7,7 +7,7 @@ import xml.etree.ElementTree as ET
 from itertools import pairwise
 
 import pytest
-from drawn_svg import SVG, assert_readable, crossed, strokes
+from drawn_svg import SVG, assert_readable, crossed, strokes, white_between_labels, white_to_lines
 from figure_samples import SAMPLES, every_sample, four_bar, polar, six_link, slotted
 from sweeps import seeds
 from tables import each_row
@@ -47,12 +47,27 @@ def test_no_label_sits_on_a_line_or_on_another_label(kind, seeds):
         assert_readable(drawn_at_random(kind, seed))
 
 
+@seeds(10, 34)
+@each_row("kind", ["slotted", "four_bar", "six_link"])
+def test_there_is_white_between_a_label_and_all_else_that_is_drawn(kind, seeds):
+    """A leader ends half a millimetre before its label, along its way: across it is nearer."""
+    for figure in (drawn_at_random(kind, seed) for seed in seeds):
+        assert white_to_lines(figure) > 0.25
+        assert white_between_labels(figure) > 0.49
+
+
 @every_sample
 def test_sample_figures_are_readable_and_print_all_their_labels(name):
     figure = SAMPLES[name]()
     assert_readable(figure)
     printed = ET.fromstring(figure.svg()).findall(f"{SVG}g[2]/{SVG}text")
     assert len(printed) == len(figure.labels()) > 5
+
+
+@each_row("name", SAMPLES)
+def test_there_is_white_between_a_label_and_all_else_of_a_sample(name):
+    assert white_to_lines(SAMPLES[name]()) > 0.25
+    assert white_between_labels(SAMPLES[name]()) > 0.49
 
 
 def test_a_label_goes_to_the_side_asked_for():

@@ -253,6 +253,29 @@ def test_a_head_of_two_choices_chooses_neither():
     assert read_choice("none", {"p": ("none, ever",), "q": ("none (yet)",)}).code == "two_values"
 
 
+@each_row(
+    ("text", "labels"),
+    [
+        ("A_B", {"a-b": ["one way"], "a b": ["another"]}),  # by their keys
+        ("same", {"p": ["same"], "q": ["same"]}),  # by their labels
+        ("none", {"p": ["none, ever"], "q": ["none (yet)"]}),  # by what these begin with
+        (
+            "pivot",
+            {"p": ["liaison pivot"], "q": ["pivot joint"], "none": ["aucune"]},
+        ),  # but for a common noun
+        ("-1", {"p": ["$w = -1$"], "q": ["$v = -1$"], "zero": ["$w = 0$"]}),  # by a value
+        ("2", {"p": ["class II"], "q": ["class III"], "two": ["w = 2"]}),  # by a number and by a value
+        ("a two", {"p": ["a", "one"], "q": ["two"]}),  # by an article that is a label
+        ("double balancier", {"p": ["double balancier qui tourne"], "q": ["double balancier qui oscille"]}),
+        ("same (r2 < r1)", {"p": ["same"], "q": ["same"], "other": ["another"]}),  # before a remark
+    ],
+)
+def test_what_two_choices_are_called_chooses_neither_by_whatever_way_it_is_read(text, labels):
+    """Not even the first of them: a person looks."""
+    for choices in (labels, dict(reversed(labels.items()))):
+        assert read_choice(text, choices).values == ()
+
+
 @each_row("name", ["serial_joints", "parallel_joints"])
 def test_a_joint_is_known_by_each_name_that_a_graph_takes_for_it(name):
     """In both languages, whatever the language of the sheet."""

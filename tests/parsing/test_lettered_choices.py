@@ -89,6 +89,20 @@ def test_a_label_of_one_letter_that_is_not_its_own_is_not_read():
     assert read_choice("B", points, {"A": "a", "B": "b", "C": "c"}).values == ("B",)
 
 
+@each_row(
+    "text",
+    ["it oscillates (not c)", "oscille (c)", "b) oscille (c is wrong)", "b (oscille) (c)", "b (not c)"],
+)
+def test_a_letter_in_a_remark_that_is_not_its_own_is_not_passed_over(text):
+    assert read_choice(text, GUIDE, LETTERS).status == "unreadable"
+
+
+@each_row("text", ["a) same", "b) same", "same (a)", "b (same)"])
+def test_a_letter_does_not_choose_among_choices_of_one_label(text):
+    choices = {"p": ("same",), "q": ("same",), "other": ("another",)}
+    assert read_choice(text, choices, lettered(choices)).code == "two_values"
+
+
 @each_row("text", ["b", "B)", "(b)", "2", "2.", "réponse b", "☐ a ☒ b", "b [x]"])
 def test_on_a_sheet_without_letters_none_is_read(text):
     assert read_choice(text, GUIDE).status == "unreadable"
