@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sweeps
+from line_crossings import crossings
 from tables import each_row
 
 from coursework.figures import circle, contact, line, note
@@ -39,6 +40,16 @@ def test_no_line_passes_through_a_body_or_a_pivot_that_it_does_not_join(seeds):
                 along = ((place - stroke.p) * way.conjugate()).real / abs(way) ** 2
                 if 1e-9 < along < 1 - 1e-9:
                     assert abs(stroke.p + along * way - place) > 4.5, joints
+
+
+def test_lines_of_a_graph_cross_seldom():
+    """As the bodies are numbered, three times as often; lines of one body, or side by side, begin near each other."""
+    graphs = [
+        joints for number in range(1000, 1024) for joints in (to_count(number), to_decompose(number).joints)
+    ]
+    found = [crossings([(e.p, e.q) for e in elements(joints, line)], 6.0) for joints in graphs]
+    assert sum(found) <= 2 * len(graphs), found
+    assert sum(crossings([(e.p, e.q) for e in elements(LIBRARY[name], line)], 6.0) for name in LIBRARY) <= 4
 
 
 def test_two_joints_of_the_same_bodies_are_two_lines():

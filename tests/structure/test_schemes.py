@@ -6,6 +6,7 @@ import itertools
 from collections import Counter
 
 import pytest
+from line_crossings import crossings
 from sweeps import slow
 from tables import each_row
 
@@ -80,6 +81,20 @@ def test_no_bar_comes_near_a_pivot_that_is_not_its_own(mechanisms):
                 # At its own pivot a bar ends, or a guide begins in line with it.
                 gap = distance(pivot, a, b)
                 assert gap < 1e-6 or gap > 5.0, joints
+
+
+def test_bars_cross_in_few_pictures(mechanisms):
+    """Most mechanisms can be drawn without any; what has ends in common does not cross."""
+    found = [
+        sum(
+            crossings([a, b])
+            for e, f in itertools.combinations(shown(joints), 2)
+            for a in e.bars()
+            for b in f.bars()
+        )
+        for joints in mechanisms
+    ]
+    assert sum(found) <= len(mechanisms) / 8, found
 
 
 def test_pivots_are_far_enough_from_each_other_to_be_told_apart(mechanisms):
