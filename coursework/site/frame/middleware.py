@@ -74,7 +74,9 @@ class Middleware:
         label = _visitor(request).label
         log_request(request.method, path, response.status_code, begun, label, why, is_error=bool(why))
         for event, person in request.events:
-            log_event(event, request.method, path, f"person {person}" if person else "", request.client_address)
+            log_event(
+                event, request.method, path, f"person {person}" if person else "", request.client_address
+            )
         return response
 
     async def _response(self, request: Request, asked: Route | Exception) -> Response:
