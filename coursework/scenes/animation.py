@@ -137,7 +137,9 @@ class Animation(Reel):
         named = [point.position for point in self.points.values()]
         turned = np.exp(1j * np.radians(self.angles))
         for ways in (named, self._drawn_points()):
-            arms = [(abs(arm), pivot, way) for way in ways for pivot, arm in [_turning(way, turned)] if arm]
+            arms = [
+                (abs(arm), pivot, way) for way in ways for pivot, arm in [turning_arm(way, turned)] if arm
+            ]
             if arms:
                 _, pivot, way = max(arms, key=lambda item: item[0])
                 return pivot, way
@@ -315,7 +317,7 @@ def _without_sizes(frame: Sequence[Element]) -> tuple[Element, ...]:
     )
 
 
-def _turning(way: np.ndarray, turned: np.ndarray) -> tuple[complex, complex]:
+def turning_arm(way: np.ndarray, turned: np.ndarray) -> tuple[complex, complex]:
     """Return centre and arm of a point that turns with a body, by least squares; an arm of 0 where it does not.
 
     ``turned`` are the body's directions over the instants, unit complex numbers, shape ``(n,)`` as ``way``, mm.

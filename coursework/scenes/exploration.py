@@ -21,7 +21,7 @@ from coursework.figures.moving import Arrow, MovingDrawing, TracedPoint, drawing
 from coursework.language.numbers import settled
 from coursework.model import GivenSpec
 from coursework.quantities.graph import Graph
-from coursework.scenes.animation import Animation
+from coursework.scenes.animation import Animation, turning_arm
 from coursework.scenes.effects import KINEMATIC, of_exercise
 from coursework.scenes.scenes import Scene
 from coursework.structure.grashof import linkage_type
@@ -280,6 +280,20 @@ class Exploration:
         """Return the gap that a fault states, mm; None where it states none."""
         found = _GAP.search(str(fault or ""))
         return abs(float(found[1])) if found else None
+
+    @cached_property
+    def crank(self) -> tuple[complex, complex] | None:
+        """Pivot of the driver, and the named point farthest from it that turns with it, where it is, mm; None where there is
+        no such point."""
+        turned, arms = np.exp(1j * np.radians(self._angles)), []
+        for way in self.points.values():
+            exists = np.isfinite(way)
+            if exists.sum() > 2:
+                arms.append(turning_arm(way[exists], turned[exists]))
+        pivot, arm = max(arms, key=lambda one: abs(one[1]), default=(0j, 0j))
+        if not arm or self.driver.jack is not None:
+            return None
+        return pivot, pivot + arm * complex(np.exp(1j * np.radians(self._angle)))
 
     @cached_property
     def nearest(self) -> float | None:

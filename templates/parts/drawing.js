@@ -1,6 +1,5 @@
 // Draws on graph paper, or joint graphs. The boxes of the page stay what is handed in: the drawing fills them, and what is typed
-// there is drawn. The page brings tools, words and settings (surface.html.j2), and a text area for the drawing, whose form is in
-// figures/student_drawing.py. Lengths are mm on paper, y upwards; angles are degrees.
+// there is drawn. The form of the text area is in figures/student_drawing.py. Lengths are mm on paper, y upwards; angles degrees.
 // One function, whose body is not indented.
 document.querySelectorAll(".surface").forEach((place) => {
 "use strict";
@@ -19,6 +18,7 @@ const heading = (p, q) => Math.atan2(q.y - p.y, q.x - p.x) * 180 / Math.PI, far 
 const along = (p, q, k) => ({ x: p.x + (q.x - p.x) * k, y: p.y + (q.y - p.y) * k }), half = (a) => a - 360 * Math.ceil((a - 180) / 360);
 const xy = (c) => ({ x: c.x, y: c.y });
 const numbers = (typed) => (typed.replace(/−/g, "-").match(/[-+]?\d+(?:[.,]\d+)?/g) || []).map((one) => +one.replace(",", "."));
+const product = (typed) => typed.split(/[*×]/).reduce((p, one) => p * numbers(one)[0] ** (/²|\^2/.test(one) ? 2 : 1), 1);
 const print = (value, digits = 2) => String(tidy(value, digits)).replace(".", data.lang === "fr" ? "," : ".");
 const near = (c, all, reach) => all.reduce((best, one) => (far(one, c) < (best ? far(best, c) : reach) ? one : best), null);
 const find = (id) => items.find((one) => one.id === id), of = (...kinds) => items.filter((one) => kinds.includes(one.k));
@@ -42,7 +42,7 @@ function foot(one, c) {
   const s = d * Math.cos((heading(it, c) - it.a) * Math.PI / 180);
   return beyond(it, it.a, it.q ? Math.max(0, Math.min(it.length, s)) : s);
 }
-// A line, or the chord that two circles have in common, meets a line or a circle.
+// Two circles are cut by the chord that they have in common.
 function cut(one, other) {
   let [p, q] = [curve(one), curve(other)].sort((a, b) => (a.r ? 1 : 0) - (b.r ? 1 : 0));
   if (p.r) {
@@ -63,8 +63,8 @@ function crossings() {
 const unit = () => view.w / (svg.clientWidth || 360), tall = () => unit() * (svg.clientHeight || 300);
 function fit() {
   const edge = isGraph ? 2 : 9, share = (svg.clientWidth || 360) / (svg.clientHeight || 300);
-  view = { w: Math.max(wide + edge + 3, (high + 14) * share) };
-  view = { ...view, x: (wide - edge + 3 - view.w) / 2, y: (high - edge / 2 - tall()) / 2 };
+  view = { w: Math.max(wide + 2 * edge - 4, (high + 14) * share) };
+  view = { ...view, x: (wide - 4 - view.w) / 2, y: (high - edge / 2 - tall()) / 2 };
 }
 const centre = () => ({ x: Math.round(view.x + view.w / 2), y: Math.round(view.y + tall() / 2) });
 function zoom(by, c = cursor || centre()) {
@@ -76,7 +76,7 @@ function at(e) {
   const room = svg.getBoundingClientRect();
   return { x: view.x + (e.x - room.left) * unit(), y: view.y + (room.bottom - e.y) * unit() };
 }
-// What is near; ``but`` is what moves.
+// ``but`` is what moves.
 function close(c, reach, but) {
   const point = near(c, of("point", "body").filter((one) => one !== but), reach), cross = !but && near(c, crossings(), reach);
   if (point) return { ...xy(point), point, how: "point" };
@@ -163,7 +163,7 @@ function fill() {
     send(box(n), one ? `(${texts.join(" ; ")})` : "");
   }
 }
-// What is typed is drawn: of an arrow its tip, from where it starts.
+// Of an arrow its tip, from where it starts.
 function take(only) {
   if (isGraph) takeGraph();
   for (const n of names) {
@@ -202,7 +202,6 @@ function measure(c) {
   show();
 }
 const measured = (what) => gauge && (what === "mm" ? gauge.length : what === "°" ? gauge.a && half(gauge.a) : scale() && what === scaled().unit ? gauge.length * scale() : undefined);
-// Two ends: dragged or tapped.
 function ends(c, tap, made) {
   if (far(start, c) < 1e-6 || (tap && start.fresh)) { start.fresh = false; preview(c); } else made(start);
 }
@@ -231,7 +230,7 @@ const release = {
   delete: (c) => remove(hit(c)),
   body(c) {
     const n = 1 + Math.max(0, ...of("body").map((one) => +one.n || 0));
-    if (hit(c)) pick(hit(c)); else make({ k: "body", ...xy(c), n: String(n) });
+    if (hit(c)) pick(hit(c)); else make({ k: "body", ...xy(c), n: `${n}` });
   },
   joint(c) {
     const there = near(c, of("body"), 6);
@@ -280,12 +279,13 @@ on(place, "click", (e) => {
   else if (to) { send(box(to), print(measured(it.dataset.unit))); tell(box(to).value); }
   else { every("[data-scale]").forEach((one) => one.setAttribute("aria-pressed", one === it)); entry("scale").value = box(it.dataset.scale).value; show(); }
 });
+on(place, "focusin", ({ target: t }) => { if (t.dataset.in && t.select) t.select(); });
 on(place, "input", (e) => {
   const what = e.target.dataset.in, typed = e.target.value, item = find(picked), n = typed.replace(/[^\p{L}\p{N}_]/gu, "");
   if (!what) return;
   if (what === "scale") { send(box(scaled().scale), typed); keep(); }
   else if (what === "direction") { way = numbers(typed)[0]; show(); }
-  else if (what === "radius") { radius = typed.split("/").map((one) => numbers(one)[0]).reduce((p, q) => p / q); pair = null; show(); }
+  else if (what === "radius") { radius = typed.split("/").map(product).reduce((p, q) => p / q); pair = null; show(); }
   else if (what === "kind") { join(typed); e.target.value = ""; }
   else if (item && n) { item.n = n; keep(); }
 });
@@ -358,7 +358,7 @@ function dragged(c) {
 on(svg, "pointerup pointercancel", (e) => {
   if (!pointers.delete(e.pointerId) || !pressed || pointers.size) return;
   const isTap = far(e, pressed) < 9, was = drag;
-  if (e.type === "pointercancel") { give_up(); return; }
+  if (e.type !== "pointerup") { give_up(); return; }
   finish();
   if (!was) release[tool](cursor = snap(at(e)), isTap);
   else if (was.item && was.moved) { remember(was.before); keep(); } else show();

@@ -263,6 +263,17 @@ def test_a_paper_has_a_surface_for_each_exercise_that_is_drawn(desk):
     context.close()
 
 
+_MIDDLE = "n => { const b = n.getBoundingClientRect(); return [b.x + b.width / 2, b.y + b.height / 2]; }"
+
+
+def test_a_radius_may_be_a_term(pencil):
+    hand = pencil("acceleration_polygon")
+    hand.circle(80 + 45j, "300²/150/20")
+    hand.circle(80 + 45j, "2,5^2*2/0.5")
+    assert [one["r"] for one in drawn_items(hand.page, "a-drawing")] == [30, 25]
+    hand.close()
+
+
 def test_a_page_that_is_handed_out_draws_alone(desk, tmp_path):
     _, _, browser = desk
     course = coursework.open_course()
@@ -279,6 +290,12 @@ def test_a_page_that_is_handed_out_draws_alone(desk, tmp_path):
     points = {"p": 80 + 45.5j, "a": 60 + 20j, "b": 30 + 25j}
     assert StudentDrawing.parse(page.input_value("[name=drawing]")).points == points
     assert [cells(page, name) for name in points] == [["80", "45,5"], ["60", "20"], ["30", "25"]]
+    page.locator("[data-name=p]").evaluate(
+        "n => scrollBy(0, n.getBoundingClientRect().bottom + 20 - innerHeight)"
+    )
+    x, y = page.locator("[data-name=p]").evaluate(_MIDDLE)
+    assert y > 780  # where the bar of the page stands, which covers no control of the surface
+    assert page.evaluate("([x, y]) => !!document.elementFromPoint(x, y).closest('[data-name=p]')", [x, y])
     for scheme in ("light", "dark"):
         page.emulate_media(color_scheme=scheme)
         assert (scheme, too_wide(page), serious(page)) == (scheme, 0, [])

@@ -1,5 +1,8 @@
 """A finger on the crank, and on the sliders of Explore, in Chromium."""
 
+import cmath
+import math
+
 import pytest
 from site_browser import desk_at, serious, too_wide, windows
 from site_people import ZOE
@@ -90,3 +93,28 @@ def test_without_script_a_button_shows_the_numbers(window):
     page.click("#explore button.main")
     assert "e=10" in page.url
     assert page.input_value("#of-e") == "10"
+
+
+def test_a_finger_drags_the_crank_of_explore(window):
+    page = window("/explore/four_bar_motion?theta2=40", is_mobile=True)
+    handle = page.locator("#explored .handle")
+    box = handle.bounding_box()
+    assert min(box["width"], box["height"]) >= 44
+    pivot, pin, scrolled = (page.evaluate(what) for what in (_PIVOT, _PIN, "scrollY"))
+    # A quarter of a turn about the pivot, upwards and to the left: y of the screen points down.
+    arm = complex(pin[0] - pivot[0], pin[1] - pivot[1])
+    way = [arm * cmath.exp(-1j * math.radians(15 * k)) - arm for k in range(1, 7)]
+    with page.expect_response(lambda reply: "theta2=" in reply.url):
+        drag(page, pin, [(z.real, z.imag) for z in way])
+    page.wait_for_function("() => location.search.includes('theta2=1')")
+    assert float(page.input_value("#of-theta2")) == pytest.approx(130, abs=3)
+    assert page.evaluate("scrollY") == scrolled
+    page.wait_for_function(
+        f"([x, y]) => {{ const [u, v] = ({_PIN}); return Math.hypot(u - x, v - y) > 20; }}", arg=pin
+    )
+
+
+#: Where pivot and pin of the crank are on the screen, px.
+_PLACE = """(() => { const n = document.querySelector("#explored svg"), c = n.dataset.crank.split(" ").map(Number);
+  const at = new DOMPoint(c[%d], c[%d]).matrixTransform(n.getScreenCTM()); return [at.x, at.y]; })()"""
+_PIVOT, _PIN = _PLACE % (0, 1), _PLACE % (2, 3)

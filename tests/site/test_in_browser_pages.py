@@ -13,6 +13,7 @@ pytestmark = pytest.mark.e2e
 REPORT = "/report"  #: a page of its own, to keep; it is printed as a PDF
 FAST = ("/practice", "/assignments/{number:int}", "/desk/{assignment:int}", "/desk/{assignment:int}/queue")
 LOOKS = [("fr", "telephone"), ("en", "desk")]  #: the longer words where there is less room
+SCHEMES = [(*LOOKS[0], "light"), (*LOOKS[1], "light"), (*LOOKS[1], "dark")]
 
 
 @pytest.fixture(scope="module")
@@ -49,14 +50,14 @@ def _begins(title, heading):
     return plain in " ".join(title.split())
 
 
-def looked_at(lived, lang, size, chosen):
+def looked_at(lived, lang, size, chosen, scheme="light"):
     site, address, browser = lived
     contexts, found = {}, {}
     for one in shown(site):
         if not chosen(one):
             continue
         if one.name not in contexts:
-            contexts[one.name] = context_of(browser, site, address, one.name, lang, size)
+            contexts[one.name] = context_of(browser, site, address, one.name, lang, size, color_scheme=scheme)
         page = contexts[one.name].new_page()
         if told := faults(page, address + one.address, lang, size):
             found[one.address] = told
@@ -72,9 +73,9 @@ def test_every_address_is_looked_at_or_is_no_page(lived):
     assert not seen & NO_PAGES
 
 
-@each_row(("lang", "size"), LOOKS)
-def test_the_pages_that_most_see_are_without_fault(lived, lang, size):
-    assert looked_at(lived, lang, size, lambda one: one.path in FAST) == {}
+@each_row(("lang", "size", "scheme"), SCHEMES)
+def test_the_pages_that_most_see_are_without_fault(lived, lang, size, scheme):
+    assert looked_at(lived, lang, size, lambda one: one.path in FAST, scheme) == {}
 
 
 @pytest.mark.slow

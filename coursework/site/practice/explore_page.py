@@ -151,7 +151,7 @@ def shown_mechanism(
         **_NOTHING,
         "sentences": sentences,
         "closes": not found.is_open,
-        "figure": Markup(_svg(drawing, sentences)) if drawing is not None else "",
+        "figure": Markup(_svg(drawing, sentences, found.crank)) if drawing is not None else "",
         "plots": plots,
         "numbers": numbers,
         "driver": symbol,
@@ -194,15 +194,17 @@ def _gap(said: Mapping[str, Any], gap: float | None, lang: str) -> list[str]:
     return [said["gap"].format(localise(significant(gap, 3), lang))] if gap is not None else [said["open"]]
 
 
-def _svg(drawing: Any, sentences: list[str]) -> str:
+def _svg(drawing: Any, sentences: list[str], crank: tuple[complex, complex] | None) -> str:
+    """Return the figure; for the script, the places of the crank's pivot and pin in it, mm."""
+    places = " ".join(f"{x:.2f}" for p in crank or () for x in drawing.on_paper(p))
     width, height = (f"{x:.6g}" for x in drawing.size)
     label = escape(" ".join(sentences))
     lines = "".join(
         track.svg(0) for track in drawing.tracks if not (track.effect == "position" and track.mark)
     )
     return (
-        f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width} {height}" role="img" aria-label="{label}">'
-        f'<g fill="none" stroke="#000" stroke-linecap="round" stroke-linejoin="round">{lines}</g></svg>'
+        f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width} {height}" role="img" aria-label="{label}" '
+        f'data-crank="{places}"><g fill="none" stroke="#000" stroke-linecap="round" stroke-linejoin="round">{lines}</g></svg>'
     )
 
 

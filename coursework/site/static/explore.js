@@ -1,10 +1,51 @@
-// Explore: a slider beside each number. What either says goes to the other; the form brings the rest by itself.
+// Explore: a slider beside each number, and a handle on the crank. What one says goes to the others; the form brings the rest
+// by itself.
 (function () {
   "use strict";
-  document.querySelectorAll("#explore input[type=range]").forEach((slider) => {
+  const form = document.getElementById("explore"), driver = form && [...form.querySelectorAll("[data-of]")].shift();
+  if (!form) return;
+  form.querySelectorAll("input[type=range]").forEach((slider) => {
     const box = document.getElementById(slider.dataset.of);
     slider.hidden = false;
     slider.addEventListener("input", () => { box.value = slider.value; });
     box.addEventListener("input", () => { if (box.value !== "") slider.value = box.value; });
   });
+
+  // The figure is another one after each change: what is held is remembered here.
+  const near = 24;
+  let held = null;
+  const figure = () => form.querySelector(".explored svg[data-crank]");
+  function places() {
+    const svg = figure(), [x, y, u, v] = (svg ? svg.dataset.crank : "").split(" ").map(Number);
+    return v === undefined ? null : [[x, y], [u, v]].map((at) => new DOMPoint(...at).matrixTransform(svg.getScreenCTM()));
+  }
+  const heading = (pivot, x, y) => Math.atan2(pivot.y - y, x - pivot.x) * 180 / Math.PI;
+  function handle() {
+    const ends = places(), svg = figure();
+    if (!ends) return;
+    const unit = svg.getScreenCTM().a, at = svg.dataset.crank.split(" ");
+    for (const [name, r] of [["grip", 9], ["handle", near]]) {
+      const ring = document.createElementNS("http://www.w3.org/2000/svg", "circle");
+      const how = { class: name, cx: at[2], cy: at[3], r: r / unit };
+      Object.entries(how).forEach(([key, is]) => ring.setAttribute(key, is));
+      svg.append(ring);
+    }
+  }
+  form.addEventListener("touchstart", (event) => { if (event.target.matches(".handle")) event.preventDefault(); }, { passive: false });
+  form.addEventListener("pointerdown", (event) => {
+    if (!event.target.matches(".handle")) return;
+    held = heading(places()[0], event.clientX, event.clientY);
+    form.setPointerCapture(event.pointerId);
+  });
+  form.addEventListener("pointermove", (event) => {
+    const ends = held !== null && places();
+    if (!ends) return;
+    const now = heading(ends[0], event.clientX, event.clientY), by = now - held;
+    held = now;
+    driver.value = ((+driver.value + by - 360 * Math.round(by / 360)) % 360 + 360) % 360;
+    driver.dispatchEvent(new Event("input", { bubbles: true }));
+  });
+  for (const end of ["pointerup", "pointercancel"]) form.addEventListener(end, () => { held = null; });
+  document.addEventListener("htmx:afterSettle", handle);
+  handle();
 })();
