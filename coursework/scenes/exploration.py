@@ -180,7 +180,7 @@ class Exploration:
         for effect in KINEMATIC[:3]:
             names = [n for n in self._scene.shown_by(effect) if n in columns and n != self.driver.moved]
             names.sort(key=lambda name: units[name] == "1")  # a number is shown after angles and lengths
-            result[effect] = tuple(Curve(n, units[n], columns[n]) for n in names[:_PANELS])
+            result[effect] = tuple(Curve(n, units[n], _existing(columns[n])) for n in names[:_PANELS])
         return {**result, "forces": self._of_forces()}
 
     def _of_forces(self) -> tuple[Curve, ...]:
@@ -195,7 +195,9 @@ class Exploration:
             )
         except WrongValue:  # neither stroke is the working one
             return ()
-        return tuple(Curve(n, units[n], columns[n]) for n in (self.driver.effort, name) if n in columns)[:1]
+        return tuple(
+            Curve(n, units[n], _existing(columns[n])) for n in (self.driver.effort, name) if n in columns
+        )[:1]
 
     @cached_property
     def closes(self) -> np.ndarray:
@@ -409,6 +411,11 @@ def _without_choices(elements: tuple[Element, ...]) -> tuple[Element, ...]:
     if not any(isinstance(element, trace) for element in elements):
         return elements
     return tuple(element for element in elements if not isinstance(element, (trace, note)))
+
+
+def _existing(values: np.ndarray) -> np.ndarray:
+    """Return the values, NaN for those that are nowhere, such as the place of an instant centre of parallel velocities."""
+    return np.where(np.isfinite(values), values, np.nan)
 
 
 def _runs(way: np.ndarray) -> list[np.ndarray]:
