@@ -204,7 +204,7 @@ def _sinpi(turns: Any) -> Any:
 # --------------------------------------------------------------------- many digits
 
 
-def of_many_digits(digits: int, tape: Tape | None = None) -> Arithmetic:
+def of_many_digits(digits: int) -> Arithmetic:
     """Return the arithmetic of single numbers in ``digits`` decimal digits; floats stand for exactly
     themselves."""
     import mpmath
@@ -240,7 +240,7 @@ def of_many_digits(digits: int, tape: Tape | None = None) -> Arithmetic:
     def taking(function: Callable[..., Any]) -> Callable[..., Any]:
         return lambda *values: function(*[_exact(mp, v) for v in values])
 
-    created = Arithmetic({name: taking(function) for name, function in functions.items()}, tape)
+    created = Arithmetic({name: taking(function) for name, function in functions.items()})
     created.functions["where"] = lambda c, a, b: _exact(mp, a) if _truth(c) else _exact(mp, b)
     created.mp = mp
     return created

@@ -86,13 +86,11 @@ class HardPlace:
         tuned = {self.tuned: self.given[self.tuned] * (1 + aside)} if self.tuned else {}
         return {**self.given, **tuned, **moved}
 
-    def approach(
-        self, distances: Sequence[float] = DISTANCES, aside: float = 0.0
-    ) -> Iterator[dict[str, Any]]:
+    def approach(self, distances: Sequence[float] = DISTANCES) -> Iterator[dict[str, Any]]:
         """Yield the given values on both sides in turn, from far to near."""
         for distance in distances:
             for side in self.sides:
-                yield self.at(side * distance, aside)
+                yield self.at(side * distance)
 
     @staticmethod
     def distances(quick: bool) -> tuple[float, ...]:

@@ -154,13 +154,8 @@ def _check_private(db: str) -> None:
 
 
 def _check_lti(folder: Path, url: str) -> None:
-    """Say what is missing before anything is served; a key is made where there is none.
-
-    Raises
-    ------
-    BadInput
-        The folder's file is for another address, or cannot be read.
-    """
+    """Say what is missing before anything is served; a key is made where there is none. Raises BadInput: the
+    folder's file is for another address, or cannot be read."""
     from coursework.platforms.lti.keys import KeyFolder
     from coursework.site.lti.service import settings_of
 
@@ -214,13 +209,8 @@ def _database_of(course: str | None, db: str | None, demo: str | None) -> Iterat
 
 
 def _address(host: str, at: socket.socket) -> str:
-    """Return the URL at which browsers reach a listening socket.
-
-    Raises
-    ------
-    BadInput
-        It listens at every address of the machine, and none is told.
-    """
+    """Return the URL at which browsers reach a listening socket. Raises BadInput: it listens at every address
+    of the machine, and none is told."""
     if host in ("0.0.0.0", "::"):
         raise BadInput(
             "--host {host} needs the address for browsers: --url https://mechanics.example.org", host=host
@@ -229,13 +219,7 @@ def _address(host: str, at: socket.socket) -> str:
 
 
 def _checked_url(url: str) -> str:
-    """Return the address that somebody tells.
-
-    Raises
-    ------
-    BadInput
-        It is none, or not that of a whole host.
-    """
+    """Return the address that somebody tells. Raises BadInput: it is none, or not that of a whole host."""
     from urllib.parse import urlsplit
 
     parts = urlsplit(url)
@@ -249,12 +233,7 @@ def _checked_url(url: str) -> str:
 
 def _entrance(host: str, url: str, demo: str | None, *, is_stated: bool) -> Entrance:
     """Return the way of signing in: without an account on this machine alone, unless an address is stated.
-
-    Raises
-    ------
-    BadInput
-        A demonstration, where anybody may be anybody, is open to other machines.
-    """
+    Raises BadInput: a demonstration, where anybody may be anybody, is open to other machines."""
     from urllib.parse import urlsplit
 
     from coursework.platforms.lti.settings import is_loopback

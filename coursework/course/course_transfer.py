@@ -189,13 +189,8 @@ def _home() -> Path:
 
 
 def _unpacked(content: bytes, digest: str) -> Path:
-    """Return the folder into which the course of a digest is unpacked, completely or not at all.
-
-    Raises
-    ------
-    CourseworkError
-        The disk takes it not.
-    """
+    """Return the folder into which the course of a digest is unpacked, completely or not at all. Raises
+    CourseworkError: the disk takes it not."""
     import zipfile
 
     target = _home() / digest[:24]

@@ -183,13 +183,8 @@ class Draws:
 
     @cached_property
     def _graph(self) -> Graph:
-        """The reference quantities with the helpers and the constraints that need them.
-
-        Raises
-        ------
-        BadCourse
-            Says which constraint needs something unknown, and what.
-        """
+        """The reference quantities with the helpers and the constraints that need them. Raises BadCourse:
+        says which constraint needs something unknown, and what."""
         graph = self._solution().graph
         twice = graph.names & self._computed.keys()
         if twice:

@@ -150,13 +150,8 @@ def _naming_folder(folder: Path) -> Iterator[None]:
 
 
 def _check_readable(connection: Connection) -> None:
-    """Check that the restored rows can be read, since cells of JSON may contain anything.
-
-    Raises
-    ------
-    BadInput
-        It cannot.
-    """
+    """Check that the restored rows can be read, since cells of JSON may contain anything. Raises BadInput: it
+    cannot."""
     for number, name in connection.execute(select(assignment.c.id, assignment.c.name)).all():
         try:
             issued_of(connection, number)

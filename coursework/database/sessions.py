@@ -96,9 +96,9 @@ def end_session(connection: Connection, number: int, person_number: int) -> bool
     return connection.execute(delete(session).where(*mine)).rowcount > 0
 
 
-def end_sessions(connection: Connection, number: int, besides: int = 0) -> None:
-    """End all sessions of a person, except the one with the id ``besides``."""
-    connection.execute(delete(session).where(session.c.person_id == number, session.c.id != besides))
+def end_sessions(connection: Connection, number: int) -> None:
+    """End all sessions of a person."""
+    connection.execute(delete(session).where(session.c.person_id == number))
 
 
 def end_all_sessions(connection: Connection) -> int:

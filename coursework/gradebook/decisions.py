@@ -125,7 +125,7 @@ class Decisions:
             if decision.answer is None or same_answer(decision.answer, line.answer):
                 yield decision
 
-    def apply(self, graded: Graded, lang: str = "") -> Graded:
+    def apply(self, graded: Graded) -> Graded:
         """Return the sheet with the decisions of people applied to its marks.
 
         Raises
@@ -138,7 +138,7 @@ class Decisions:
         lines, unanswered = dict(graded.lines), list(graded.unanswered)
         for part, line in graded.lines.items():
             if (decision := self.standing(graded, line)) is not None:
-                lines[part] = decision.mark(line, lang or str(graded.record.get("lang", "fr")))
+                lines[part] = decision.mark(line, str(graded.record.get("lang", "fr")))
                 if part not in (*graded.answered, *unanswered):
                     unanswered.append(part)
         return graded._replace(lines=lines, unanswered=tuple(unanswered))

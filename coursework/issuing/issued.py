@@ -288,13 +288,7 @@ _KIND_NAMES = {
 
 
 def _record_of(item: Any) -> dict[str, Any]:
-    """Return the record of an item, after checking both.
-
-    Raises
-    ------
-    _Unfit
-        One is not.
-    """
+    """Return the record of an item, after checking both. Raises _Unfit: one is not."""
     record = item.get("record") if isinstance(item, dict) else None
     if not isinstance(record, dict):
         raise _Unfit(Message("it has no record"))

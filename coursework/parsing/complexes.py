@@ -156,13 +156,7 @@ def _without(unit: str, formula: str) -> str:
 
 
 def _value(formula: str) -> complex:
-    """Return the value of a formula with ``i`` or ``j``.
-
-    Raises
-    ------
-    Unreadable
-        It is none.
-    """
+    """Return the value of a formula with ``i`` or ``j``. Raises Unreadable: it is none."""
     spaced = _GLUED_E.sub(" e", _PREFIXED.sub(r"\1*", formula))
     value = complex(plain_expression(spaced, _IMAGINARY).evaluate())
     if not cmath.isfinite(value):

@@ -182,14 +182,9 @@ _PART_OF_PI = math.pi / 12
 
 
 def _meant(expression: Expression) -> Expression:
-    """Return a formula with the plain numbers in its sines, cosines and tangents as they are meant: in degrees, where they can be nothing
-    else; in radians, where each is a part of pi.
-
-    Raises
-    ------
-    Stop
-        Nothing tells which, and it matters: ``degrees_or_radians``.
-    """
+    """Return a formula with the plain numbers in its sines, cosines and tangents as they are meant: in
+    degrees, where they can be nothing else; in radians, where each is a part of pi. Raises Stop: nothing
+    tells which, and it matters: ``degrees_or_radians``."""
     root = numbers_in_degrees(expression.root)
     if root == expression.root:
         return expression
@@ -215,11 +210,7 @@ def _of_angle(expression: Expression, unit: Unit | None, unit_text: str, target:
     A multiple of pi is in radians, what is divided by pi in degrees. A number that is added to an inverse function, or stands
     in a sine, says which it is by its size: beyond two turns of radians it is in degrees, a part of pi is in radians.
 
-    Raises
-    ------
-    Stop
-        Nothing tells which: ``two_values``.
-    """
+    Raises Stop: nothing tells which: ``two_values``."""
     degree = parse_unit("deg")
     root, in_degrees = expression.root, expression.as_calculated_in_degrees
     if unit is not None:

@@ -18,13 +18,7 @@ class Unprintable(Exception):
 
 
 def number(value: complex) -> str:
-    """Return a number in the syntax of Maxima.
-
-    Raises
-    ------
-    Unprintable
-        It is not finite.
-    """
+    """Return a number in the syntax of Maxima. Raises Unprintable: it is not finite."""
     if isinstance(value, complex):
         return f"({number(value.real)}+%i*{number(value.imag)})"
     if isinstance(value, bool) or not math.isfinite(value):
@@ -64,13 +58,7 @@ _ATTRIBUTES = {"real": "realpart({0})", "imag": "imagpart({0})"}
 
 def printed(tree: ast.expr, name: Callable[[str], str], space: Mapping[str, Any]) -> str:
     """Return a Python expression in the syntax of Maxima; ``name`` writes a quantity or raises ``KeyError``,
-    ``space`` has the values of the other names.
-
-    Raises
-    ------
-    Unprintable
-        Something in it has no counterpart.
-    """
+    ``space`` has the values of the other names. Raises Unprintable: something in it has no counterpart."""
 
     def of(node: ast.expr) -> str:
         match node:

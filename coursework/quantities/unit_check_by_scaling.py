@@ -178,15 +178,9 @@ def _power_of(created: Opaque, position: int, factor: float, origin: Origin) -> 
 
 
 def _system(origin: Origin) -> list[float]:
-    """Return the base units, in SI, of the one system that all units belong to.
-
-    Raises
-    ------
-    UnitFault
-        Two units of one dimension differ.
-    Unprovable
-        Units such as mm, kg and N together, which only a conversion inside could bring together.
-    """
+    """Return the base units, in SI, of the one system that all units belong to. Raises UnitFault: two units
+    of one dimension differ; Unprovable: units such as mm, kg and N together, which only a conversion
+    inside could bring together."""
     sizes = [s for s in origin.handed if not s.is_like(ONE)]
     for first in sizes:
         for other in sizes:

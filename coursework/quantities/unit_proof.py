@@ -126,13 +126,7 @@ class _Walk:
         return self.value(name)
 
     def _compared(self, name: str, node: QuantityNode, result: Any) -> Any:
-        """Return a function's result in the declared unit.
-
-        Raises
-        ------
-        UnitFault
-            It is in another.
-        """
+        """Return a function's result in the declared unit. Raises UnitFault: it is in another."""
         if name not in self.sizes:
             return result
         result = gathered(result)

@@ -116,13 +116,7 @@ def page_of(content: Mapping[str, Any]) -> PageScan | None:
 
 
 def _box(numbers: Any) -> tuple[float, float, float, float]:
-    """Four numbers.
-
-    Raises
-    ------
-    TypeError, ValueError
-        They are others.
-    """
+    """Four numbers. Raises TypeError, ValueError: they are others."""
     x, y, width, height = numbers
     if not all(type(number) in _TYPES[float] for number in numbers):
         raise TypeError(numbers)
@@ -133,13 +127,8 @@ _TYPES = {str: (str,), int: (int,), float: (int, float), bool: (bool,)}
 
 
 def _checked(stored: _Stored) -> _Stored:
-    """Check that the fields of a stored object have their declared types; return the object.
-
-    Raises
-    ------
-    TypeError
-        One is not.
-    """
+    """Check that the fields of a stored object have their declared types; return the object. Raises
+    TypeError: one is not."""
     for name, sort in get_type_hints(type(stored)).items():
         if sort in _TYPES and type(getattr(stored, name)) not in _TYPES[sort]:
             raise TypeError(f"{name} is {getattr(stored, name)!r}"[:80])

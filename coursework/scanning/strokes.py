@@ -121,12 +121,10 @@ def has_dark_outline(page: Straight, box: Box) -> bool:
     return sum(float(np.mean(side > STRONG)) > 0.6 for side in sides) >= 3
 
 
-def row_ink(
-    page: Straight, boxes: Sequence[Box], around: float = 1.5, within: Box | None = None
-) -> tuple[np.ndarray, Box]:
-    """Return the ink (255 paper) of the boxes in a row, and their span: ``around`` mm more, or the given
+def row_ink(page: Straight, boxes: Sequence[Box], within: Box | None = None) -> tuple[np.ndarray, Box]:
+    """Return the ink (255 paper) of the boxes in a row, and their span: 1.5 mm more, or the given
     area; dark outlines are erased."""
-    span = within or span_of(boxes, around)
+    span = within or span_of(boxes, 1.5)
     ink = page.cut(span).copy()
     for box in boxes:
         if has_dark_outline(page, box):

@@ -248,13 +248,7 @@ class Exploration:
 
     @cached_property
     def _angle(self) -> float:
-        """Angle of the driver now, degrees.
-
-        Raises
-        ------
-        CannotAssemble
-            The jack does not reach that length.
-        """
+        """Angle of the driver now, degrees. Raises CannotAssemble: the jack does not reach that length."""
         if self.driver.jack is None:
             return self.at
         found = self.exercise.solve(**self._scene.given, only=self.driver.angle, effects=())

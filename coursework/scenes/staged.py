@@ -205,13 +205,8 @@ class Staged:
         return linkage
 
     def _refuse_moving(self, mechanism: Mechanism) -> None:
-        """Refuse positions that move within their body.
-
-        Raises
-        ------
-        BadCourse
-            It names the quantity that the driver moves.
-        """
+        """Refuse positions that move within their body. Raises BadCourse: it names the quantity that the
+        driver moves."""
         for position in mechanism.unfolded():
             for name in parameters(position):
                 if name in self.moved:
@@ -298,13 +293,8 @@ class Staged:
 
     def _acting(self, load: Load) -> AppliedLoad:
         """Return a load on the mechanism; a quantity of it that the driver moves is followed over the turn.
-
-        Raises
-        ------
-        WrongValue
-            It goes by what the driver's speed changes, which is no place; a function hides that it moves; or it acts during
-            the strokes of a crank where a jack drives.
-        """
+        Raises WrongValue: it goes by what the driver's speed changes, which is no place; a function hides
+        that it moves; or it acts during the strokes of a crank where a jack drives."""
         if "stroke" in load.during:
             check_turns(f"the {load.during}", self.exercise)
         for position in (load.force, load.moment, load.angle):

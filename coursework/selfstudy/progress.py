@@ -143,13 +143,7 @@ def date_of(item: Entry) -> datetime:
 
 
 def _checked(item: Any) -> Entry:
-    """Return an entry if it is valid.
-
-    Raises
-    ------
-    ValueError, TypeError, KeyError
-        It lacks what every entry has.
-    """
+    """Return an entry if it is valid. Raises ValueError, TypeError, KeyError: it lacks what every entry has."""
     if date_of(item).tzinfo is None:
         raise ValueError(item["at"])
     for number in (item["seed"], item.get("step", 1)):

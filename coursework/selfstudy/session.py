@@ -319,13 +319,8 @@ class StudySession:
     def _arguments_of(
         self, method: str, kind: str, text: Any, named: Mapping[str, Any], names: Collection[str]
     ) -> tuple[dict[str, Any], list[str]]:
-        """Return what a method is told, by the names that it knows, and what is said of names that it does not know.
-
-        Raises
-        ------
-        UnknownName
-            It knows none of the names.
-        """
+        """Return what a method is told, by the names that it knows, and what is said of names that it does
+        not know. Raises UnknownName: it knows none of the names."""
         results: dict[str, Any] = {}
         strange: list[UnknownName] = []
         under = self._asked_under if kind == "prediction" else self._keys

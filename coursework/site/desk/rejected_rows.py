@@ -36,13 +36,8 @@ def rejected(request: Request) -> Response:
 
 
 def _decided(request: Request, now: ClassState, row: UnplacedRow) -> str:
-    """Apply the action of a form to a rejected row; return the message.
-
-    Raises
-    ------
-    BadInput
-        The form names no student or question, or the question has an answer already.
-    """
+    """Apply the action of a form to a rejected row; return the message. Raises BadInput: the form names no
+    student or question, or the question has an answer already."""
     texts, asked_for = request.words["files"], request.form.text("do")
     if asked_for == "back":
         with request.site.store.begin() as connection:

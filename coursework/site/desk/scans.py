@@ -62,13 +62,7 @@ def scans_page(request: Request, message: str = "") -> Response:
 
 
 def _sent(request: Request, now: ClassState) -> str:
-    """Start to read the uploaded files.
-
-    Raises
-    ------
-    BadInput
-        No file was sent.
-    """
+    """Start to read the uploaded files. Raises BadInput: no file was sent."""
     if request.form.text("do") == "hand over":
         return ""
     sent = request.form.uploads("scans")
@@ -117,13 +111,7 @@ def cards_page(request: Request) -> Response:
 
 
 def _answer(request: Request, card: AnswerCard) -> str:
-    """Return the typed answer.
-
-    Raises
-    ------
-    BadInput
-        A name is asked for and none was typed.
-    """
+    """Return the typed answer. Raises BadInput: a name is asked for and none was typed."""
     text = request.form.text("answer").strip()[:LONGEST]
     if card.exercise == PAGE:
         return f"{request.form.text('paper')} {request.form.text('number').strip() or '1'}"

@@ -189,13 +189,8 @@ def _practised(request: Request, name: str, variants: int, last: datetime | None
 
 
 def _decided(request: Request, now: ClassState, student: str) -> str:
-    """Decide on one answer, or withdraw the decision.
-
-    Raises
-    ------
-    BadInput
-        The points are not a number, or exceed the maximum.
-    """
+    """Decide on one answer, or withdraw the decision. Raises BadInput: the points are not a number, or exceed
+    the maximum."""
     form, texts = request.form, request.words["queue"]
     exercise, seed, part = form.text("exercise"), form.text("seed"), form.text("part")
     sheet = next(

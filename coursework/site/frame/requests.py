@@ -177,9 +177,7 @@ class Request(StarletteRequest):
         """Record in the audit what the current user does."""
         note(connection, self.received_at, self.actor, what, **about)
 
-    def require(
-        self, permission: Permission, assignment: int | None = None, group: str | None = None
-    ) -> None:
+    def require(self, permission: Permission) -> None:
         """Refuse the request unless the user has a permission beyond that of the route.
 
         Raises
@@ -187,7 +185,7 @@ class Request(StarletteRequest):
         HTTPException
             The user has not the permission.
         """
-        if not may(self.person, permission, assignment, group):
+        if not may(self.person, permission):
             raise HTTPException("role", 403)
 
     @property

@@ -89,13 +89,7 @@ def _has(chapter: Any, lesson_name: str) -> bool:
 
 
 def _opened(request: Request) -> tuple[str, SteppedLesson]:
-    """Return the lesson of the address.
-
-    Raises
-    ------
-    HTTPException
-        There is none.
-    """
+    """Return the lesson of the address. Raises HTTPException: there is none."""
     name = str(request.path_params["lesson"])
     if name not in request.site.course.folder.lessons:
         raise HTTPException("page", 404)
@@ -122,13 +116,8 @@ def _after(request: Request, name: str) -> tuple[str, str] | None:
 
 
 def _example(request: Request, opened: SteppedLesson) -> tuple[int, BlanksPiece]:
-    """Return the blanks that a form fills in, with the number of their step.
-
-    Raises
-    ------
-    HTTPException
-        The step has no blanks: nothing but the lesson says which variant is marked.
-    """
+    """Return the blanks that a form fills in, with the number of their step. Raises HTTPException: the step
+    has no blanks: nothing but the lesson says which variant is marked."""
     stated = request.form.text("example")
     number = int(stated) if stated.isdecimal() and len(stated) < 6 else 0
     blanks = opened.steps[number - 1].blanks if 0 < number <= len(opened.steps) else None

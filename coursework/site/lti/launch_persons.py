@@ -62,13 +62,7 @@ def _is_current(person: Any, launch: Launch, lang: str) -> bool:
 
 def _add_person(site: Site, connection: Connection, launch: Launch, lang: str) -> None:
     """Connect the only person of the rosters with the platform's e-mail address or number, or else a new
-    person.
-
-    Raises
-    ------
-    HTTPException
-        The person has a password, which must be entered once.
-    """
+    person. Raises HTTPException: the person has a password, which must be entered once."""
     matches = people_matching(connection, launch.issuer, launch.email, launch.number)
     if len(matches) == 1 and has_password(connection, matches[0].id):
         raise HTTPException("connect", 403, connecting.address(site, launch, matches[0].id))

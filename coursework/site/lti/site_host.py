@@ -118,13 +118,8 @@ class SiteHost:
     # ------------------------------------------------------------------- a student
 
     def _site_request(self, request: LTIRequest, linked: LinkedAssignment, form: FormData) -> SiteRequest:
-        """Return the site's request of the launch's person, after a paper has been assigned to them.
-
-        Raises
-        ------
-        HTTPException
-            The assignment is not published, not open, or cannot be assigned.
-        """
+        """Return the site's request of the launch's person, after a paper has been assigned to them. Raises
+        HTTPException: the assignment is not published, not open, or cannot be assigned."""
         site, launch = self._site, request.launch
         publication: Publication | None = None
         if linked.number is not None:

@@ -240,13 +240,8 @@ def _ending(sent: Upload) -> str:
 
 
 def _of_file(request: Request, paper: StudentPaper, sent: Upload) -> tuple[dict[str, str], list[str]]:
-    """Return the answers of a file to the person's own paper, by box, and messages about the file.
-
-    Raises
-    ------
-    BadInput
-        The file needs too many resources, or has more rows than a paper.
-    """
+    """Return the answers of a file to the person's own paper, by box, and messages about the file. Raises
+    BadInput: the file needs too many resources, or has more rows than a paper."""
     messages, warnings = request.words["assignments"], []
     name = f"answers{_ending(sent)}"  # not the uploaded name, which is untrusted
     rows = read_upload(request, ANSWER_FILE, read_rows, name, sent.data, MOST_ROWS)

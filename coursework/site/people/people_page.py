@@ -117,13 +117,8 @@ def _invite(request: Request) -> Response:
 
 
 def _link(request: Request, connection: Connection, row: PersonRow) -> InvitationLink:
-    """Make an invitation link, if the current user may invite the person; all pages make links here.
-
-    Raises
-    ------
-    HTTPException
-        The current user may not, or another person has the login.
-    """
+    """Make an invitation link, if the current user may invite the person; all pages make links here. Raises
+    HTTPException: the current user may not, or another person has the login."""
     request.require(to_invite(row.role))
     _check_login(connection, row.login, row.id)
     address = invited(request.site, connection, row.id, row.login, row.role)
@@ -157,13 +152,8 @@ def add(request: Request) -> Response:
 
 
 def _add_student(request: Request, connection: Connection, student: Student) -> int:
-    """Add a student, or update a known person from a roster; a roster does not change staff.
-
-    Raises
-    ------
-    HTTPException
-        It names a member of staff, whom the current user may not change.
-    """
+    """Add a student, or update a known person from a roster; a roster does not change staff. Raises
+    HTTPException: it names a member of staff, whom the current user may not change."""
     existing = person_by_identifier(connection, student.draw_key)
     if existing is not None and (existing.role or STUDENT) in STAFF:
         request.require(Permission.PEOPLE_ROLES)

@@ -40,13 +40,8 @@ def progress(request: Request) -> Response:
 
 def _brought(request: Request, store: PersonProgress) -> int:
     """Add the entries of a file; return the number of new ones. Their answers are not marked, since that
-    would test answers to a class's variants.
-
-    Raises
-    ------
-    BadInput
-        The file is not one of progress, is of a later version, or is too long.
-    """
+    would test answers to a class's variants. Raises BadInput: the file is not one of progress, is of a
+    later version, or is too long."""
     texts = request.words["progress"]
     upload = next(iter(request.form.files.get("file", ())), None)
     if upload is None:

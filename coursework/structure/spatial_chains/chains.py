@@ -200,13 +200,8 @@ _IN_PLANE_OR_SQUARE = 1e-9  #: largest component out of the plane, or in it, of 
 
 @lru_cache(maxsize=1024)
 def _projected(name: str, frame: tuple[Vector, Vector, Vector], pitch: float) -> np.ndarray:
-    """Return the free twists of a joint in the plane xy, at its own point: shape (k, 3), read-only.
-
-    Raises
-    ------
-    WrongValue
-        Its axis or its normal is neither in the plane nor perpendicular to it.
-    """
+    """Return the free twists of a joint in the plane xy, at its own point: shape (k, 3), read-only. Raises
+    WrongValue: its axis or its normal is neither in the plane nor perpendicular to it."""
     for vector in frame[:2]:
         across, along = abs(vector[2]), max(abs(vector[0]), abs(vector[1]))
         if min(across, along) > _IN_PLANE_OR_SQUARE:
