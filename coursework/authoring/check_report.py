@@ -54,6 +54,19 @@ class CheckReport:
         if message not in self.failures:
             self.failures.append(message)
 
+    def add(self, later: CheckReport) -> None:
+        """Add what was tried after this, by another process say."""
+        self.counts.update(later.counts)
+        for failure in later.failures:
+            self.fail(failure)
+        for name, tally in later.mistakes.items():
+            self.mistakes.setdefault(name, Counter()).update(tally)
+        self.unproved |= later.unproved
+        self.unproved_units |= later.unproved_units
+        self.unprotected |= later.unprotected
+        self.unmade |= later.unmade
+        self.by_person |= later.by_person
+
     def as_json(self) -> dict[str, Any]:
         """Return the report as ``coursework check --json`` prints it."""
         return {

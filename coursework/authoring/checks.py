@@ -8,6 +8,7 @@ from __future__ import annotations
 import math
 from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -46,15 +47,18 @@ from coursework.scenes.animation import Animation
 from coursework.sheets.answer_sheet import answer_sheet
 from coursework.sheets.handout import handout as handout_of
 from coursework.sheets.handout import prompt
-from coursework.system.processes import Lost, processes, workers
+from coursework.system.processes import Lost, Submit, processes, workers
 
 RENDERED = 1  #: variants whose sheets are rendered in every format and language
 _SOME = 3  #: variants that show whether a quantity is complex
 NONSENSICAL = 20  #: variants that are answered by nonsense; it is read alike on all
 
 
-def check(exercise: CourseExercise, variants: int, *, rendered: int = RENDERED) -> CheckReport:
-    """Try every promise on the variants of seeds 0, 1, …
+def check(
+    exercise: CourseExercise, variants: int, *, rendered: int = RENDERED, submit: Submit | None = None
+) -> CheckReport:
+    """Try every promise on the variants of seeds 0, 1, …; other processes answer some of the variants if ``submit`` sends
+    calls to them.
 
     Whatever breaks is reported, and the rest is tried all the same, unless no variant has an answer.
     """
@@ -65,27 +69,32 @@ def check(exercise: CourseExercise, variants: int, *, rendered: int = RENDERED) 
         lambda: check_texts(exercise, report),
         lambda: check_symbols(exercise, report),
         lambda: check_known(exercise, report),
-        lambda: _check_variants(exercise, variants, report),
+        lambda: _check_variants(exercise, variants, report, submit),
         lambda: check_rendering(exercise, rendered, report),
     )
     for step in steps:
         try:
             step()
-        except CourseworkError as fault:
-            report.fail(str(fault))
-        except Exception as fault:  # an author's slip in a function of the course; the check goes on
-            report.fail(f"{type(fault).__name__}: {fault}")
+        except Exception as fault:  # perhaps an author's slip in a function of the course; the check goes on
+            report.fail(_problem(fault))
     return report
+
+
+def _problem(fault: Exception) -> str:
+    return str(fault) if isinstance(fault, CourseworkError) else f"{type(fault).__name__}: {fault}"
 
 
 def check_all(
     course: Course, names: Sequence[str], variants: int, progress: Callable[[], None] = lambda: None
 ) -> list[CheckReport]:
-    """Return a report an exercise, in this order, made by as many processes as there are processors."""
-    count = min(workers(len(names)), workers(variants, _WORTH_PROCESSES))
+    """Return a report an exercise, in this order, made by as many processes as there are processors: they share the
+    exercises, or the variants of each if there are few exercises."""
+    count = workers(variants, _WORTH_PROCESSES)
     if count < 2:
         return [_with_progress(_check_one(course, name, variants), progress) for name in names]
     with processes(count) as submit:
+        if len(names) < 2 * count:
+            return [_with_progress(_check_one(course, name, variants, submit), progress) for name in names]
         # The longest first, so that no process waits for another at the end.
         longest = sorted(names, key=lambda name: -_length(course, name))
         tasks = {name: submit(_check_elsewhere, str(course.folder.root), name, variants) for name in longest}
@@ -99,6 +108,7 @@ def check_all(
 
 
 _WORTH_PROCESSES = 50  #: variants an exercise; fewer are done before a process has started
+_TOGETHER = 8  #: variants that a process answers at a time
 
 
 def _length(course: Course, name: str) -> int:
@@ -124,16 +134,16 @@ def _check_elsewhere(root: str, name: str, variants: int) -> CheckReport:
     return _check_one(course, name, variants)
 
 
-def _check_one(course: Course[Any], name: str, variants: int) -> CheckReport:
+def _check_one(course: Course[Any], name: str, variants: int, submit: Submit | None = None) -> CheckReport:
     try:
-        return check(course[name], variants)
+        return check(course[name], variants, submit=submit)
     except CourseworkError as fault:
         report = CheckReport(name)
         report.fail(str(fault))
         return report
 
 
-def _check_variants(exercise: CourseExercise, count: int, report: CheckReport) -> None:
+def _check_variants(exercise: CourseExercise, count: int, report: CheckReport, submit: Submit | None) -> None:
     report.acceptance = exercise.draws.acceptance()
     lang = exercise.languages[0]
     try:
@@ -146,8 +156,55 @@ def _check_variants(exercise: CourseExercise, count: int, report: CheckReport) -
     if not drawn:
         return
     _describe(drawn, report)
+    pending = _answered(exercise, drawn, submit)
     check_arrays(exercise, drawn, report)
     check_rounding_students(exercise, drawn, report)
+    later, problem = _tried(_check_all_together, drawn, exercise.name)  # while others answer
+    for result in pending:
+        _merge(report, *result())
+    _merge(report, later, problem)
+    for name in exercise.solution.mistakes:
+        tally = report.mistakes.setdefault(name, Counter())
+        if count >= 50 and not tally["shown"]:
+            report.fail(f"mistake {name} shows in none of {len(drawn)} variants")
+
+
+def _answered(
+    exercise: CourseExercise, drawn: Sequence[Variant], submit: Submit | None
+) -> list[Callable[[], tuple[CheckReport, str]]]:
+    """Return functions that return the reports on the answers to some variants each."""
+    if submit is None:
+        return [partial(_tried, _check_each, drawn, exercise.name)]
+    root, seeds = str(exercise.folder.root), [variant.seed for variant in drawn]
+    blocks = [seeds[k : k + _TOGETHER] for k in range(0, len(seeds), _TOGETHER)]
+    return [submit(_answered_elsewhere, root, exercise.name, block).result for block in blocks]
+
+
+def _answered_elsewhere(root: str, name: str, seeds: Sequence[int]) -> tuple[CheckReport, str]:
+    exercise = opened(root, Variant)[name]
+    lang = exercise.languages[0]
+    return _tried(_check_each, [exercise.variant(seed, lang, (ALL,)) for seed in seeds], name)
+
+
+def _tried(
+    work: Callable[[Sequence[Variant], CheckReport], None], drawn: Sequence[Variant], name: str
+) -> tuple[CheckReport, str]:
+    """Return the report of a function on variants, up to the problem at which it stopped, if any."""
+    report = CheckReport(name)
+    try:
+        work(drawn, report)
+    except Exception as fault:
+        return report, _problem(fault)
+    return report, ""
+
+
+def _merge(report: CheckReport, later: CheckReport, problem: str) -> None:
+    report.add(later)
+    if problem:
+        raise CourseworkError(problem)
+
+
+def _check_each(drawn: Sequence[Variant], report: CheckReport) -> None:
     for variant in drawn:
         key = variant.key
         check_solves(variant, key, report)
@@ -155,6 +212,9 @@ def _check_variants(exercise: CourseExercise, count: int, report: CheckReport) -
         check_mistakes(variant, key, report)
         check_slips(variant, key, report)
         check_follow_through(variant, key, report)
+
+
+def _check_all_together(drawn: Sequence[Variant], report: CheckReport) -> None:
     for variant in drawn[:NONSENSICAL]:
         check_nonsense(variant, report)
     check_usual_errors(drawn, report)
@@ -166,10 +226,6 @@ def _check_variants(exercise: CourseExercise, count: int, report: CheckReport) -
     check_formulas(drawn, report)
     check_units(drawn, report)
     check_alone(drawn, report)
-    for name in exercise.solution.mistakes:
-        tally = report.mistakes.setdefault(name, Counter())
-        if count >= 50 and not tally["shown"]:
-            report.fail(f"mistake {name} shows in none of {len(drawn)} variants")
 
 
 def _describe(drawn: Sequence[Variant], report: CheckReport) -> None:

@@ -3,18 +3,24 @@
 from __future__ import annotations
 
 import json
+import pickle
 import shutil
 from collections import Counter
+from concurrent.futures import Future
 
 import pytest
 
 import coursework
+from coursework.authoring import checks
 from coursework.authoring.check_report import CheckReport, notes, table
 from coursework.authoring.checks import agrees, check, check_solves
 from coursework.cli.printing import print_table
+from coursework.course.exercise import ALL
+from coursework.issuing.issuing import distinct_variants
 from coursework.language.words import file_of
 from coursework.solution import given
 
+COURSE = coursework.open_course()
 X = "return r * cos(theta)"
 
 
@@ -202,3 +208,40 @@ def test_a_printed_value_agrees_to_its_last_digit():
     assert agrees(-179.999, "180.00", is_angle=True)
     assert not agrees(1.0 + 1e-8, 1)
     assert agrees("open", "open")
+
+
+# ---------------------------------------------------------------------------- by several processes
+
+
+def inline(function, *arguments):
+    """Does what another process would, with copies of what it is sent and of what it returns."""
+    function, arguments = pickle.loads(pickle.dumps((function, arguments)))
+    done = Future()
+    done.set_result(pickle.loads(pickle.dumps(function(*arguments))))
+    return done
+
+
+def test_processes_that_share_the_variants_report_what_one_does():
+    alone, shared = (check(COURSE["grashof"], 20, rendered=0, submit=submit) for submit in (None, inline))
+    assert alone.as_json() == shared.as_json()
+    assert list(alone.counts) == list(shared.counts)
+    assert alone.counts["right answers"] > 20
+
+
+def test_where_a_function_fails_on_a_variant_what_was_tried_before_is_reported_and_nothing_after(monkeypatch):
+    tried, seen = checks.check_slips, []
+
+    def breaks(variant, key, report):
+        seen.append(variant.seed)
+        if variant.seed >= last:
+            raise ZeroDivisionError("by an author")
+        tried(variant, key, report)
+
+    last = 0
+    monkeypatch.setattr(checks, "check_slips", breaks)
+    seeds = [v.seed for v in distinct_variants(COURSE["grashof"], 0, 20, "en", Counter(), (ALL,))]
+    last = seeds[11]
+    alone, shared = (check(COURSE["grashof"], 20, rendered=0, submit=submit) for submit in (None, inline))
+    assert alone.as_json() == shared.as_json()
+    assert alone.failures == ["ZeroDivisionError: by an author"]
+    assert not alone.counts["guessed"]
