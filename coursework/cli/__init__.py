@@ -14,7 +14,7 @@ from coursework.cli.printing import problem_of
 from coursework.errors import CourseworkError
 from coursework.language.environment import language_of
 from coursework.messages import Message, localised, messages_in
-from coursework.system.ending import Ended, end_cleanly, has_ended
+from coursework.system.ending import Ended, end_cleanly, has_ended, leave
 from coursework.system.visible import visible_streams
 
 
@@ -23,7 +23,7 @@ def main() -> None:
     # Matrices here are small: threads of the linear algebra would only wait, and use a processor for it.
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     end_cleanly()
-    sys.exit(run(sys.argv[1:]))
+    leave(run(sys.argv[1:]))
 
 
 def run(arguments: Sequence[str]) -> int:

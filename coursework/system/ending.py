@@ -11,7 +11,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from functools import partial
 from types import FrameType
-from typing import Any
+from typing import Any, NoReturn
 
 _GRACE = 2.0  #: seconds for an orphaned process to clean up
 _BY_SIGNAL = 128  #: exit status of a process that a signal ended: this plus the signal's number
@@ -45,11 +45,28 @@ def end_cleanly() -> None:
 
 def has_ended() -> None:
     """Ignore further signals: the process runs its last lines. Call it in the main thread."""
+    global _is_ended
+    _is_ended = True
     for number in signal.Signals:
         if signal.getsignal(number) is _end:
             signal.signal(number, signal.SIG_IGN)
 
 
+def leave(status: int) -> NoReturn:
+    """End this process, after a signal also if a thread does not end: it may wait for a lock that the signal left taken."""
+    if _is_ended:
+        last = time.monotonic() + _GRACE
+        for thread in threading.enumerate():
+            if thread is not threading.main_thread() and not thread.daemon:
+                thread.join(max(0.0, last - time.monotonic()))
+                if thread.is_alive():
+                    sys.stdout.flush()
+                    sys.stderr.flush()
+                    os._exit(status)
+    sys.exit(status)
+
+
+_is_ended = False
 _waiting: list[int] = []  #: a signal that arrived while signals were blocked
 _are_signals_handled = True
 _is_at_work = True  #: False in a process that waits for a task and has nothing to clean up

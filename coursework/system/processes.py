@@ -183,7 +183,8 @@ def _leave(executor: ProcessPoolExecutor) -> None:
     _end(begun)
     if manager is not None:
         answers._writer.close()  # a process terminated while it answered has sent half of its answer
-        manager.join()
+        # A signal may have interrupted this thread as it took a lock for which that thread now waits.
+        manager.join(_PATIENCE)
 
 
 def _end(workers: Sequence[BaseProcess]) -> None:
