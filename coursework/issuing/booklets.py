@@ -2,7 +2,8 @@
 
 A booklet has a limited number of exercises; a larger class gets several, named by the sheets they hold. The
 typesetter keeps a whole document in memory, two megabytes a page, and joining PDFs would lose the accessibility
-tags. For the same reason one is made after the other.
+tags. For the same reason one is made after the other. Solutions have more pages than sheets, and nobody hands them out:
+their booklets have fewer exercises.
 """
 
 from __future__ import annotations
@@ -18,7 +19,8 @@ from typing import TypeVar
 from coursework.system.tables import Spreadsheet, csv_file
 from coursework.system.writing import File
 
-EXERCISES = 50  #: limit of exercises in one booklet: of sheets, or in all of its papers
+#: Limits of exercises in one booklet, of sheets or in all of its papers: either takes some 400 MB.
+EXERCISES, SOLVED = 50, 20
 
 Pages = tuple[tuple[int, int], ...]  #: the first and the last of each sheet
 _Sheet = TypeVar("_Sheet")
@@ -27,11 +29,10 @@ _Made = TypeVar("_Made")
 
 @dataclass(frozen=True)
 class Booklet:
-    """File of several sheets, and the file of their solutions."""
+    """File of several sheets."""
 
     name: str
     print_sheets: Callable[[], tuple[bytes, Pages]]
-    print_solutions: Callable[[], bytes]
     cells: Sequence[Mapping[str, object]]  #: of each sheet, its row of the table without pages and file
 
     def rows(self, pages: Pages) -> Iterator[dict[str, object]]:
@@ -39,17 +40,24 @@ class Booklet:
             yield {**row, "first page": first, "last page": last, "file": f"{self.name}.pdf"}
 
 
-def parted(name: str, sheets: Sequence[_Sheet], exercises: int = 1) -> Iterator[tuple[str, Sequence[_Sheet]]]:
-    """Yield each booklet's name and its sheets, of so many exercises each."""
-    digits, most = len(str(len(sheets))), max(1, EXERCISES // exercises)
+def parted(
+    name: str, sheets: Sequence[_Sheet], exercises: int, limit: int
+) -> Iterator[tuple[str, Sequence[_Sheet]]]:
+    """Yield each booklet's name and its sheets, of so many exercises each, up to a limit of exercises."""
+    digits, most = len(str(len(sheets))), max(1, limit // exercises)
     for start in range(0, len(sheets), most):
         part = sheets[start : start + most]
         which = f".{start + 1:0{digits}}-{start + len(part):0{digits}}" if len(sheets) > most else ""
         yield f"{name}{which}", part
 
 
-def bound(booklets: Iterable[Booklet], columns: Sequence[str], spreadsheet: Spreadsheet) -> Iterator[File]:
-    """Yield the files of booklets, and after them the table of the students' pages.
+def bound(
+    booklets: Iterable[Booklet],
+    solutions: Iterable[tuple[str, Callable[[], bytes]]],
+    columns: Sequence[str],
+    spreadsheet: Spreadsheet,
+) -> Iterator[File]:
+    """Yield the files of booklets and of named solutions, and after them the table of the students' pages.
 
     The files are to be made in this order, by one thread or several.
     """
@@ -57,10 +65,8 @@ def bound(booklets: Iterable[Booklet], columns: Sequence[str], spreadsheet: Spre
     alone = threading.Lock()
     for booklet, pages in wanted:
         yield File(Path("handouts") / f"{booklet.name}.pdf", partial(_printed, booklet, pages, alone))
-        yield File(
-            Path("instructor") / f"{booklet.name}.solutions.pdf",
-            partial(_alone, booklet.print_solutions, alone),
-        )
+    for name, make in solutions:
+        yield File(Path("instructor") / f"{name}.solutions.pdf", partial(_alone, make, alone))
 
     def table() -> bytes:
         rows = (row for booklet, pages in wanted for row in booklet.rows(pages.result()))

@@ -69,7 +69,12 @@ def files(
         return
     if "booklet" in formats:
         columns = SHEET_COLUMNS if assignment is None else PAPER_COLUMNS
-        yield from booklets.bound(_booklets(renderer, issued_papers), columns, spreadsheet)
+        bound = (_booklet(renderer, *booklet) for booklet in _booklets(issued_papers, booklets.EXERCISES))
+        solutions = (
+            (name, partial(_solved, renderer, part, lang))
+            for name, part, lang in _booklets(issued_papers, booklets.SOLVED)
+        )
+        yield from booklets.bound(bound, solutions, columns, spreadsheet)
     yield from tables(course, issues, assignment, spreadsheet, secret)
 
 
@@ -151,16 +156,19 @@ def _tex(
             yield rendered(path.with_name(drawn), "", renderer.polygons_pdf, sheet)
 
 
-def _booklets(renderer: Renderer, issued_papers: Sequence[IssuedPaper]) -> Iterator[Booklet]:
-    """Yield the booklets of a build: of each language, and of each exercise that is handed out alone."""
+def _booklets(
+    issued_papers: Sequence[IssuedPaper], limit: int
+) -> Iterator[tuple[str, Sequence[IssuedPaper], str]]:
+    """Yield the name, the papers and the language of each booklet of a build, of at most so many exercises: of each
+    language, and of each exercise that is handed out alone."""
     groups: dict[tuple[str, str], list[IssuedPaper]] = {}
     for issued_paper in sorted(issued_papers, key=lambda issued_paper: issued_paper.sorted_by):
         for lang in issued_paper.first.langs:
             groups.setdefault((issued_paper.folder or "class", lang), []).append(issued_paper)
     for (group_name, lang), group in groups.items():
         exercises = max(len(issued_paper.issues) for issued_paper in group)
-        for name, part in booklets.parted(f"{group_name}.{lang}", group, exercises):
-            yield _booklet(renderer, name, part, lang)
+        for name, part in booklets.parted(f"{group_name}.{lang}", group, exercises, limit):
+            yield name, part, lang
 
 
 def _booklet(renderer: Renderer, name: str, issued_papers: Sequence[IssuedPaper], lang: str) -> Booklet:
@@ -168,9 +176,13 @@ def _booklet(renderer: Renderer, name: str, issued_papers: Sequence[IssuedPaper]
     return Booklet(
         name,
         lambda: bind([issued_paper.printed(lang) for issued_paper in issued_papers]),
-        lambda: bind([issued_paper.solution(lang) for issued_paper in issued_papers])[0],
         [{**issued_paper.cells, "lang": lang} for issued_paper in issued_papers],
     )
+
+
+def _solved(renderer: Renderer, issued_papers: Sequence[IssuedPaper], lang: str) -> bytes:
+    bind = issued_papers[0].binds(renderer)
+    return bind([issued_paper.solution(lang) for issued_paper in issued_papers])[0]
 
 
 def tex_stem(path: Path) -> str:

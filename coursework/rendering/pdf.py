@@ -24,6 +24,7 @@ from coursework.markup.typst import to_typst
 from coursework.rendering import answer_pages, feedback, views
 from coursework.rendering.environment import environment, render
 from coursework.sheets.sheet import AnswerSheet, FeedbackSheet
+from coursework.system.memory import little_memory
 
 _LOCAL = threading.local()
 _FORGETTING = 40  #: documents, a third of a millisecond each
@@ -157,7 +158,7 @@ def compile_booklet(
     import typst
 
     written = files(drawn(typst_source, folders))
-    with _complaints():
+    with _complaints(), little_memory():
         # Asked of the compiler that then writes the file, the pages are laid out once.
         opened: Any = typst.Compiler  # takes the files by name as well, which its types do not say
         compiler = opened(input=written, font_paths=list(fonts_of(folders)), ignore_system_fonts=True)

@@ -84,23 +84,22 @@ def bound_files(course, issues):
 
 def test_a_large_class_has_several_booklets_named_with_their_sheets(course, monkeypatch):
     monkeypatch.setattr(booklets, "EXERCISES", 4)
+    monkeypatch.setattr(booklets, "SOLVED", 6)
     names = [str(f.path) for f in bound_files(course, issues_of(course, 10))]
     assert names == [
         "handouts/slotted_mechanism.fr.01-04.pdf",
-        "instructor/slotted_mechanism.fr.01-04.solutions.pdf",
         "handouts/slotted_mechanism.fr.05-08.pdf",
-        "instructor/slotted_mechanism.fr.05-08.solutions.pdf",
         "handouts/slotted_mechanism.fr.09-10.pdf",
-        "instructor/slotted_mechanism.fr.09-10.solutions.pdf",
+        "instructor/slotted_mechanism.fr.01-06.solutions.pdf",
+        "instructor/slotted_mechanism.fr.07-10.solutions.pdf",
         "handouts/pages.csv",
     ]
 
 
-def test_exercises_count_not_papers(monkeypatch):
-    monkeypatch.setattr(booklets, "EXERCISES", 7)
-    parts = booklets.parted("class.fr", "abcde", 3)
+def test_exercises_count_not_papers():
+    parts = booklets.parted("class.fr", "abcde", 3, 7)
     assert list(parts) == [("class.fr.1-2", "ab"), ("class.fr.3-4", "cd"), ("class.fr.5-5", "e")]
-    assert list(booklets.parted("class.fr", "ab", 8)) == [("class.fr.1-1", "a"), ("class.fr.2-2", "b")]
+    assert list(booklets.parted("class.fr", "ab", 8, 7)) == [("class.fr.1-1", "a"), ("class.fr.2-2", "b")]
 
 
 def test_the_table_of_pages_has_a_line_for_each_sheet_whichever_booklet_holds_it(
