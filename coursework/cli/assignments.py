@@ -42,6 +42,7 @@ _ADDED: Mapping[str, tuple[click.ParamType, Mapping[Any, str]]] = {
     "booklet": (click.BOOL, {True: "booklet"}),
     "scan": (click.BOOL, {True: "scan"}),
     "practice": (click.BOOL, {True: "practice"}),
+    "solutions": (click.BOOL, {False: "no-solutions"}),
     "polygons": (click.BOOL, {False: "no-polygons"}),
     "paper": (click.Choice(["a4", "letter"]), {"letter": "letter"}),
     "decimal": (click.Choice(["point", "comma"]), {"comma": "decimal-comma"}),
@@ -181,7 +182,12 @@ def build_papers(context: click.Context, exercises: Sequence[str]) -> None:
             out=out,
             files=files,
         )
-    say("worked solutions and the key, for the staff only: {folder}", folder=out / "instructor")
+    say(
+        "the key, for the staff only: {folder}"
+        if "no-solutions" in formats
+        else "worked solutions and the key, for the staff only: {folder}",
+        folder=out / "instructor",
+    )
     if "nbgrader" in formats and only is None:
         title = assignment.name if assignment else names[0]
         say(

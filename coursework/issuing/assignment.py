@@ -37,6 +37,7 @@ OPTIONS = (
     "practice",
     "booklet",
     "scan",
+    "solutions",
     "polygons",
     "out",
     "decimal",

@@ -73,6 +73,7 @@ def files(
         solutions = (
             (name, partial(_solved, renderer, part, lang))
             for name, part, lang in _booklets(issued_papers, booklets.SOLVED)
+            if "no-solutions" not in formats
         )
         yield from booklets.bound(bound, solutions, columns, spreadsheet)
     yield from tables(course, issues, assignment, spreadsheet, secret)
@@ -123,6 +124,8 @@ def _paper(
         yield rendered(for_student, ".ipynb", notebook, paper)
     if "tex" in formats:
         yield from _tex(renderer, issued_paper, lang, for_student, solved=False)
+    if "no-solutions" in formats:
+        return
     if "pdf" in formats:
         yield rendered(for_staff, ".solution.pdf", pdf, solution)
     if "html" in formats:

@@ -7,5 +7,6 @@ ADDITIONS = {
     "practice": "notebooks for self-study, which check answers",
     "letter": "US Letter in place of A4",
     "decimal-comma": "tables for a spreadsheet with decimal commas",
+    "no-solutions": "no worked solutions for the staff; the key remains",
     "no-polygons": "worked solutions without drawn velocity and acceleration polygons, in a third to half of the time",
 }

@@ -96,6 +96,22 @@ def test_a_large_class_has_several_booklets_named_with_their_sheets(course, monk
     ]
 
 
+def test_without_solutions_what_is_handed_out_and_the_key_remain(course):
+    formats = ["pdf", "html", "tex", "booklet"]
+    whole, less = (
+        {file.path.as_posix(): file for file in build.files(course, issues_of(course, 2), [*formats, *more])}
+        for more in ((), ("no-solutions",))
+    )
+    left_out = {name for name in whole if name not in less}
+    assert left_out == {name for name in whole if name.startswith("instructor/") and "key." not in name}
+    assert {name.rpartition(".solution")[2] for name in left_out if ".solution" in name} == {
+        ".pdf",
+        ".html",
+        ".tex",
+        "s.pdf",
+    }
+
+
 def test_exercises_count_not_papers():
     parts = booklets.parted("class.fr", "abcde", 3, 7)
     assert list(parts) == [("class.fr.1-2", "ab"), ("class.fr.3-4", "cd"), ("class.fr.5-5", "e")]
