@@ -41,10 +41,11 @@ class Booklet:
 
 
 def parted(
-    name: str, sheets: Sequence[_Sheet], exercises: int, limit: int
+    name: str, sheets: Sequence[_Sheet], exercises: int = 1, limit: int = 0
 ) -> Iterator[tuple[str, Sequence[_Sheet]]]:
-    """Yield each booklet's name and its sheets, of so many exercises each, up to a limit of exercises."""
-    digits, most = len(str(len(sheets))), max(1, limit // exercises)
+    """Yield each booklet's name and its sheets, of so many exercises each; at most ``limit`` in a booklet, by default
+    :data:`EXERCISES`."""
+    digits, most = len(str(len(sheets))), max(1, (limit or EXERCISES) // exercises)
     for start in range(0, len(sheets), most):
         part = sheets[start : start + most]
         which = f".{start + 1:0{digits}}-{start + len(part):0{digits}}" if len(sheets) > most else ""
