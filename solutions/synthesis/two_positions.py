@@ -10,6 +10,7 @@ from coursework.figures import Figure, axes, ground_pivot, line, link, pin, poin
 from coursework.solution import Judged, formula, given, judge, mistake
 
 from ...exercises.synthesis._positions import in_its_place, placed, side
+from ._pivots import PIVOTS, judged_lengths, of_placement, pivots_of
 
 UNITS = {
     "x_B1": "mm", "y_B1": "mm", "x_B2": "mm", "y_B2": "mm", "d_A": "mm", "d_B": "mm", "half": "deg",
@@ -91,20 +92,13 @@ def r4(x_B1, y_B1, x_C, y_C):
     return np.hypot(x_B1 - x_C, y_B1 - y_C)
 
 
-MARGIN_MM = 1.0
-
-
 def _faults(O, C, first, second, L):
     """Of a pair of pivots, by name, in the order in which they are told."""
     (A1, B1), (A2, B2) = first, second
     r2, r4 = abs(A1 - O), abs(B1 - C)
-    swapped = (abs(abs(A1 - C) - abs(A2 - C)) <= MARGIN_MM) & (abs(abs(B1 - O) - abs(B2 - O)) <= MARGIN_MM)
-    off = (abs(r2 - abs(A2 - O)) > MARGIN_MM) | (abs(r4 - abs(B2 - C)) > MARGIN_MM)
     shortest, longest = L / 3, 4 * L
     unwieldy = (np.minimum(r2, r4) < shortest) | (np.maximum(r2, r4) > longest) | (abs(C - O) < L / 2)
-    return {
-        "pivots_exchanged": off & swapped,
-        "off_the_bisectors": off,
+    return of_placement(O, C, (first, second)) | {
         "out_of_bounds": unwieldy,
         "assembled_otherwise": side(A1, B1, C) != side(A2, B2, C),
     }
@@ -121,27 +115,19 @@ def fault(x_O, y_O, x_C, y_C, x1, y1, phi1, x2, y2, phi2, L):
     )[()]
 
 
-PIVOTS = ("x_O", "y_O", "x_C", "y_C")
-
-
 @judge
 def passes_both_positions(answers, x1, y1, phi1, x2, y2, phi2, L):
     """Any pair of pivots from which the coupler reaches both positions; lengths from the student's own pivots."""
-    if not all(name in answers for name in PIVOTS):
+    pivots = pivots_of(answers)
+    if pivots is None:
         return {}
-    x_O, y_O, x_C, y_C = (float(answers[name]) for name in PIVOTS)
-    O, C = complex(x_O, y_O), complex(x_C, y_C)
+    O, C = pivots
     first, second = placed(x1, y1, phi1, L), placed(x2, y2, phi2, L)
     faults = _faults(O, C, first, second, L)
     name = next((name for name, is_so in faults.items() if is_so), "")
-    found = {"frame": float(abs(C - O))}
     share = {"": 1.0, "out_of_bounds": 0.5, "assembled_otherwise": 0.5}.get(name, 0.0)
-    said = dict.fromkeys(PIVOTS, Judged(share, name, found))
-    for length, pivot, ends in (("r2", O, (first[0], second[0])), ("r4", C, (first[1], second[1]))):
-        if length in answers:
-            right = any(abs(float(answers[length]) - abs(end - pivot)) <= MARGIN_MM for end in ends)
-            said[length] = Judged(follows=share < 1) if right else Judged(0.0, "length_elsewhere")
-    return said
+    said = dict.fromkeys(PIVOTS, Judged(share, name, {"frame": float(abs(C - O))}))
+    return said | judged_lengths(answers, O, C, (first, second), share < 1)
 
 
 @mistake("x_P", "y_P")

@@ -7,7 +7,8 @@ from tables import each_row
 
 import coursework
 
-TWO = coursework.open_course()["two_positions"]
+COURSE = coursework.open_course()
+TWO, THREE = COURSE["two_positions"], COURSE["three_positions"]
 PIVOTS = ("x_O", "y_O", "x_C", "y_C")
 
 
@@ -59,3 +60,29 @@ def test_any_pivots_of_the_bisectors_are_right_if_the_linkage_passes():
             assert [marks[name].verdict == "correct" for name in PIVOTS] == [expected] * 4, (s, t)
             assert marks["r2"].points == marks["r2"].out_of
     assert min(tried.values()) > 5
+
+
+@each_row("seed", range(10))
+def test_pivots_for_three_positions_are_where_the_bisectors_cross(seed):
+    """In fifty digits, as the fixed point of no rotation: the crossing of two lines of equal distances."""
+    variant = THREE.variant(seed)
+    found = variant.solution()
+    with mpmath.workdps(50):
+        places = [placed(variant.given, k) for k in (1, 2, 3)]
+        for k, pivot in enumerate(("O", "C")):
+            p, q, r = (place[k] for place in places)
+            # |z|^2 - |p|^2 = 2 Re(conj(z - p) pivot) for both other places.
+            rows = [[(z - p).real, (z - p).imag] for z in (q, r)]
+            right = [(abs(z) ** 2 - abs(p) ** 2) / 2 for z in (q, r)]
+            x, y = mpmath.lu_solve(mpmath.matrix(rows), mpmath.matrix(right))
+            assert found[f"x_{pivot}"] == pytest.approx(float(x), rel=1e-10, abs=1e-9)
+            assert found[f"y_{pivot}"] == pytest.approx(float(y), rel=1e-10, abs=1e-9)
+        # The coupler reaches the three places with B on one side of AC.
+        C = mpmath.mpc(found["x_C"], found["y_C"])
+        assert len({mpmath.sign(((C - A).conjugate() * (B - A)).imag) for A, B in places}) == 1
+
+
+def test_a_pivot_from_which_all_places_look_equally_far_is_none():
+    variant = THREE.variant(0)
+    marks = variant.grade(dict.fromkeys(PIVOTS, 1e9) | {"r2": 1e9, "r4": 1e9})
+    assert all(marks[name].points == 0 for name in PIVOTS)
