@@ -2,13 +2,15 @@
 
 ``exercises/``, ``solutions/`` and ``templates/`` stand side by side. Nothing is registered: the stem of
 ``exercises/NAME.py`` is the exercise's name everywhere. Files may stand in folders of topics,
-``exercises/TOPIC/NAME.py``; a topic is a folder without ``__init__.py``, and no part of a name.
+``exercises/TOPIC/NAME.py``; a topic is a folder without ``__init__.py``, and no part of a name. ``exercises/NAME.toml`` is a
+mechanism, from which both modules and all texts are compiled: :mod:`coursework.linkages`.
 """
 
 from __future__ import annotations
 
 import importlib
 import itertools
+import re
 import sys
 from collections.abc import Mapping, Sequence
 from functools import cached_property
@@ -26,6 +28,7 @@ if TYPE_CHECKING:
     from coursework.course.chapters import Chapter, ChapterSection
     from coursework.course.marking_rules import Rules
 
+MECHANISM = ".toml"  #: ending of the file of an exercise that is stated as a mechanism
 UNTOLD = "fr"  #: the language of a course that states none, where nobody says another
 
 _packages = itertools.count()
@@ -84,7 +87,8 @@ class Folder:
         return tuple(sorted(self._modules("exercises")))
 
     def home(self, kind: str, name: str) -> Path | None:
-        """Return the file of ``KIND/NAME``, wherever it stands: ``NAME.py``, or ``NAME/__init__.py``; none where there is none.
+        """Return the file of ``KIND/NAME``, wherever it stands: ``NAME.py``, ``NAME/__init__.py``, or the mechanism's ``NAME.toml``; none
+        where there is none.
 
         Raises
         ------
@@ -110,6 +114,11 @@ class Folder:
             files = [
                 *((p.stem, p) for p in folder.glob("*.py")),
                 *((p.parent.name, p) for p in folder.glob("*/__init__.py")),
+                *(
+                    (p.stem, p)
+                    for p in folder.glob(f"*{MECHANISM}")
+                    if kind == "exercises" and is_mechanism(p)
+                ),
             ]
             for name, path in files:
                 if not name.isidentifier() or name.startswith("_"):
@@ -118,13 +127,24 @@ class Folder:
                     places = " and ".join(sorted(self.relative(p) for p in (modules[name], path)))
                     raise BadCourse(f"{name} stands twice: {places}; keep one of them, or rename it")
                 modules[name] = path
-        return modules
+        return modules if kind == "exercises" else {**self._mechanisms, **modules}
+
+    @property
+    def _mechanisms(self) -> dict[str, Path]:
+        """Return the mechanisms' files of ``exercises`` by name."""
+        return {n: p for n, p in self._modules("exercises").items() if p.suffix == MECHANISM}
 
     def text_file(self, kind: str, name: str, lang: str) -> Path:
         """``NAME.LANG.md.j2``, beside the module or inside the exercise's own folder; where it would stand if there is none."""
         file = f"{name}.{lang}.md.j2"
         folders = self._text_folders(kind, name)
-        return next((folder / file for folder in folders if (folder / file).exists()), folders[-1] / file)
+        written = next((folder / file for folder in folders if (folder / file).exists()), None)
+        home = self.home(kind, name)
+        if written is None and home is not None and home.suffix == MECHANISM:
+            from coursework.linkages.compiled import CompiledText
+
+            return CompiledText(home, self.relative(home), kind, lang)  # type: ignore[return-value]  # reads as a path
+        return written or folders[-1] / file
 
     def texts(self, kind: str, name: str) -> dict[str, Path]:
         """Return the texts of ``KIND/NAME`` by language, whatever is spoken."""
@@ -138,6 +158,9 @@ class Folder:
         home = self.home(kind, name)
         if home is None:
             return (self.root / kind,)
+        if home.suffix == MECHANISM:
+            place = self.root / kind / home.parent.relative_to(self.root / "exercises")
+            return place, self.root / kind
         return (
             (home.parent, home.parent.parent)
             if home.name == "__init__.py"
@@ -367,6 +390,11 @@ class Folder:
             The file cannot be imported; the message names the file, the line and the fault.
         """
         home = self.home(kind, name)
+        if home is not None and home.suffix == MECHANISM:
+            from coursework.linkages.compiled import compiled
+
+            dotted = ".".join((self._package, kind, name))
+            return compiled(home, self.relative(home)).module(kind, dotted)
         steps = (kind, name) if home is None else home.relative_to(self.root).with_suffix("").parts
         return self._imported(steps, self.source(kind, name))
 
@@ -391,6 +419,16 @@ class Folder:
             raise BadCourse(f"{source}: {_line_of(fault, self.root)}{fault}") from fault
         except Exception as fault:
             raise BadCourse(f"{source} cannot be used: {_where(fault, self.root)}") from fault
+
+
+def is_mechanism(path: Path) -> bool:
+    """Return whether a TOML file in the exercises states a mechanism, and not settings or the data of a module beside it."""
+    if path.name == "course.toml" or path.with_suffix(".py").exists():
+        return False
+    return (
+        re.search(r"^\s*\[(ground|bodies|ask)\]", path.read_text("utf-8", "replace"), re.MULTILINE)
+        is not None
+    )
 
 
 def _where(fault: Exception, root: Path) -> str:

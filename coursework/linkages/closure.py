@@ -1,0 +1,187 @@
+"""Closure of a mechanism, asked of the frames of its bodies: how far its joints are from holding, and whether it turns all round."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from coursework.mechanics.linkage import MM, BodyPoint, Linkage
+from coursework.mechanics.statement import Mechanism, Place
+from coursework.quantities.graph import Graph
+
+_STEPS = 180  #: positions of a turn
+
+
+def turns_round(
+    functions: Callable[[], Sequence[Callable[..., Any]]],
+    names: Sequence[str],
+    driver: str,
+    values: Mapping[str, Any],
+) -> Any:
+    """Return whether a mechanism closes in every position of its driver.
+
+    Parameters
+    ----------
+    functions
+        A function that returns those of the angles, and those that they need.
+    names
+        Angles that follow from the driver's.
+    driver
+        Name of the driver's angle, degrees.
+    values
+        Quantities that place the mechanism; scalars, or arrays of shape ``(n,)``.
+
+    Returns
+    -------
+    True or False, of the broadcast shape of the values: 180 positions of a turn are tried.
+    """
+    graph = Graph({f.__name__: f for f in functions()})
+    shape = np.broadcast_shapes(*(np.shape(v) for v in values.values())) if values else ()
+    size = int(np.prod(shape, dtype=int))
+    flat = {n: np.repeat(np.ravel(np.broadcast_to(v, shape)), _STEPS) for n, v in values.items()}
+    turn = np.tile(np.linspace(-180.0, 180.0, _STEPS, endpoint=False), size)
+    with np.errstate(all="ignore"):
+        found = graph.evaluate(tuple(names), {**flat, driver: turn})
+    good = np.all([np.isfinite(np.broadcast_to(found[n], turn.shape)) for n in names], axis=0)
+    return good.reshape(*shape, _STEPS).all(axis=-1)
+
+
+class Track(NamedTuple):
+    """Slide as the file states it: the sliding point, its body, the guide, a place on the line and its direction in the guide's frame
+    (mm, degrees; quantities or functions of them), the quantity that is the distance along it."""
+
+    at: str
+    of: str
+    on: str
+    through: Place
+    along: Place
+    distance: str
+
+
+def closure_gaps(
+    mechanism: Mechanism,
+    tracks: Sequence[Track],
+    sides: Sequence[tuple[str, str, str, str]],
+    driver: str,
+    order: int,
+    values: Mapping[str, Any],
+) -> tuple[Any, ...]:
+    """Return how far joints are from holding, and their velocities and accelerations from agreeing.
+
+    Parameters
+    ----------
+    mechanism
+        Bodies and joints.
+    tracks
+        Its slides.
+    sides
+        Of each triangle the inner joint, both outer ones, and the quantity that is +1 where the inner one lies on the left of the line
+        between the others.
+    driver
+        Name of the driver's angle.
+    order
+        0 for positions, 1 with velocities, 2 with accelerations.
+    values
+        Lengths in mm, angles in degrees, ``omega…`` and ``alpha…`` of the bodies; scalars or arrays that broadcast.
+
+    Returns
+    -------
+    Gaps over the sizes of their terms, each of the broadcast shape.
+
+    Source
+    ------
+    Every point that bodies share is placed by the frame of each, with ``i omega`` and ``i alpha - omega^2`` for its rates; a point
+    that slides stays on its line, and leaves the guide's own point by the sliding velocity and the Coriolis term.
+    """
+    shape = np.broadcast_shapes(*(np.shape(v) for v in values.values()))
+    flat = {n: np.ravel(np.broadcast_to(v, shape)) for n, v in values.items()}
+    rows = [
+        _Frames(mechanism, driver, {n: v[k].item() for n, v in flat.items()}).gaps(tracks, sides, order)
+        for k in range(int(np.prod(shape, dtype=int)))
+    ]
+    return tuple(np.reshape(column, shape)[()] for column in np.array(rows).T)
+
+
+class _Frames:
+    """Frames of all bodies at an instant, by their angles alone."""
+
+    def __init__(self, mechanism: Mechanism, driver: str, values: Mapping[str, Any]) -> None:
+        self.linkage = Linkage(mechanism, values, driver)
+        angles = [b.angle for b in mechanism.bodies]
+        self.turns, self.rates, self.gains = (
+            [*(_of(a, stem, values) for a in angles), 0.0] for stem in ("theta", "omega", "alpha")
+        )
+        self.units = [np.exp(1j * np.radians(t)) for t in self.turns]
+        self.origins: list[tuple[complex, complex, complex]] = []
+        self.free = set(self.linkage.free)
+        for body, held in enumerate(self.linkage.origins):
+            start = self.origins[held.body] if held.body >= 0 else (0j, 0j, 0j)
+            shift = 0j
+            if body in self.free:
+                shift = complex(self.linkage.number(mechanism.bodies[body].origin)) * MM
+            place = self.carried(held, start)
+            self.origins.append((place[0] + shift, place[1], place[2]))
+        self.origins.append((0j, 0j, 0j))
+
+    def carried(
+        self, held: BodyPoint, start: tuple[complex, complex, complex] | None = None
+    ) -> tuple[complex, complex, complex]:
+        """Return position, velocity and acceleration of a place on a body."""
+        begin = self.origins[held.body] if start is None else start
+        arm = held.place * self.units[held.body]
+        rate, gain = self.rates[held.body], self.gains[held.body]
+        return begin[0] + arm, begin[1] + 1j * rate * arm, begin[2] + (1j * gain - rate**2) * arm
+
+    def gaps(
+        self, tracks: Sequence[Track], sides: Sequence[tuple[str, str, str, str]], order: int
+    ) -> list[float]:
+        """Return the gaps of pins and slides over the sizes of their terms."""
+        linkage = self.linkage
+        closing = [pin for pin in linkage.pins if pin.closes]
+        ends = [(self.carried(pin.of), self.carried(pin.on)) for pin in closing]
+        far = max(
+            [
+                1e-12,
+                *(abs(z) for pair in ends for place in pair for z in place[:1]),
+                *(abs(o[0]) for o in self.origins),
+            ]
+        )
+        fast = max([1e-12, *(abs(r) * far for r in self.rates)])
+        faster = max([1e-12, *((r**2 + abs(g)) * far for r, g in zip(self.rates, self.gains, strict=True))])
+        sizes = (far, fast, faster)
+        results = [abs(one[k] - other[k]) / sizes[k] for one, other in ends for k in range(order + 1)]
+        for track in tracks:
+            results += self._of_track(track, order, sizes)
+        for inner, start, end, side in sides:
+            B, P, Q = (self.carried(linkage.owner(point))[0] for point in (inner, start, end))
+            area = ((Q - P).conjugate() * (B - P)).imag / max(abs(Q - P) * abs(B - P), 1e-300)
+            results.append(max(-area * float(linkage.values[side]), 0.0))
+        return results
+
+    def _of_track(self, track: Track, order: int, sizes: tuple[float, float, float]) -> list[float]:
+        linkage = self.linkage
+        of, on = linkage.index[track.of], linkage.index[track.on]
+        if of in self.free or on in self.free:
+            order = 0
+        way = np.exp(1j * np.radians(linkage.number(track.along))) * self.units[on]
+        place = self.carried(linkage.held(track.at, track.of))
+        line = self.carried(BodyPoint(on, complex(linkage.number(track.through)) * MM))
+        apart = (place[0] - line[0]) * np.conj(way)
+        stated = float(linkage.values[track.distance]) * MM
+        results = [abs(apart.imag) / sizes[0], abs(apart.real - stated) / sizes[0]]
+        under = self.carried(BodyPoint(on, (place[0] - self.origins[on][0]) / self.units[on]))
+        slid = (place[1] - under[1]) * np.conj(way)
+        if order > 0:
+            results.append(abs(slid.imag) / sizes[1])
+        if order > 1:
+            turned = 2j * self.rates[on] * slid.real * way
+            results.append(abs(((place[2] - under[2] - turned) * np.conj(way)).imag) / sizes[2])
+        return results
+
+
+def _of(angle: Any, stem: str, values: Mapping[str, Any]) -> float:
+    if isinstance(angle, (int, float)):
+        return float(angle) if stem == "theta" else 0.0
+    return float(values.get(str(angle).replace("theta", stem, 1), 0.0))

@@ -1,0 +1,513 @@
+"""Compiler of a mechanism's file: the modules and texts of an exercise and of its solution, as an author would have written them."""
+
+from __future__ import annotations
+
+import linecache
+import os
+import sys
+import tomllib
+from dataclasses import dataclass
+from functools import cached_property, lru_cache
+from pathlib import Path
+from types import ModuleType
+
+from coursework.errors import CourseworkError
+from coursework.linkages.drawing import FigureWriter
+from coursework.linkages.expressions import Expression, ExpressionReader
+from coursework.linkages.formulas import FormulaWriter, Quantity, names_in, vector_code
+from coursework.linkages.groups import Dyad
+from coursework.linkages.linkage_file import (
+    GROUND,
+    GivenEntry,
+    LinkageFile,
+    Place,
+    author_faults,
+    read_linkage,
+)
+from coursework.linkages.questions import QuestionWriter
+from coursework.linkages.sentences import exercise_text, solution_text, spoken
+
+_IMPORTS = """\
+import numpy as np
+from math import pi
+
+from coursework.degrees import acos, angle, atan2, cos, from_radians, polar, sin, sqrt, tan, wrap
+from coursework.kinematics import dyads
+from coursework.kinematics.chains import Vector
+from coursework.linkages.closure import Track, closure_gaps, turns_round
+from coursework.linkages.large import LargeGroup
+"""
+_EXERCISE_IMPORTS = """\
+from coursework.figures import Figure, angle_mark, ground_pivot, line, link, pin, point, rail, slider, slot_link
+from coursework.model import Driver, Exercise, Part, chosen, detectable, drawn, fixed
+"""
+_SOLUTION_IMPORTS = """from coursework.mechanics import Body, Gear, Load, Mechanism, Slide
+from coursework.solution import mistake, stable
+"""
+
+
+@dataclass(frozen=True)
+class CompiledLinkage:
+    """Mechanism compiled from its file."""
+
+    linkage: LinkageFile
+
+    @cached_property
+    def formulas(self) -> FormulaWriter:
+        return FormulaWriter(self.linkage)
+
+    @cached_property
+    def questions(self) -> QuestionWriter:
+        return QuestionWriter(self.formulas)
+
+    # ------------------------------------------------------------------ exercise
+
+    @cached_property
+    def exercise(self) -> str:
+        """Source of the exercise's module."""
+        figure = FigureWriter(self.formulas)
+        _ = self.questions  # which add their quantities
+        conditions, constants = self._constraints()
+        wanted = [*names_in(figure.code.replace("\n", " ")), *self._turns]
+        helpers = [q for q in self.formulas.transitive(wanted) if q.name not in self.linkage.given]
+        chains = [f"{n} = {code}" for n, code in self.formulas.constants.items()]
+        pieces = [
+            f'"""{self.linkage.name}: exercise."""\n',
+            _IMPORTS,
+            _EXERCISE_IMPORTS,
+            *chains,
+            *(_plain(q) for q in helpers),
+            constants,
+            *(code for _, code in conditions),
+            f"def figure({', '.join(names_in(figure.code.replace(chr(10), ' ')))}):\n    return {figure.code}",
+            self._statement(
+                [*(q.name for q in helpers), *(["crank_turns"] if constants else [])],
+                [name for name, _ in conditions],
+            ),
+        ]
+        return "\n\n\n".join(p for p in pieces if p)
+
+    def _statement(self, helpers: list[str], conditions: list[str]) -> str:
+        linkage = self.linkage
+        given = [f"        {n!r}: {_given(entry)}," for n, entry in linkage.given.items()]
+        for point, entry in self.formulas.modes.items():
+            if entry.is_drawn:
+                given.append(f"        'mode_{point}': chosen({', '.join(map(repr, entry.ways))}),")
+        parts = [f"        {q.source}," for q in self.questions.questions]
+        symbols = {
+            n: q.symbol for n, q in self.formulas.quantities.items() if q.symbol and not n.startswith("_")
+        }
+        symbols |= {
+            f"mode_{p}": rf"\mathrm{{mode}}_{{{p}}}" for p, e in self.formulas.modes.items() if e.is_drawn
+        }
+        driver = f"Driver({linkage.angle!r}, {linkage.speed!r}, {linkage.acceleration!r}{self._effort()})"
+        return (
+            "EXERCISE = Exercise(\n    given={\n" + "\n".join(given) + "\n    },\n"
+            f"    helpers=({''.join(f'{n}, ' for n in helpers)}),\n"
+            f"    constraints=({''.join(f'{c}, ' for c in conditions)}),\n"
+            "    parts=(\n" + "\n".join(parts) + "\n    ),\n"
+            f"    figure=figure,\n    version={linkage.version},\n    symbols={symbols!r},\n    driver={driver},\n)"
+        )
+
+    def _effort(self) -> str:
+        return ", effort='torque'" if "torque" in self.formulas.quantities else ""
+
+    @property
+    def _turns(self) -> tuple[str, ...]:
+        """Angles that follow from the driver's."""
+        turns = dict.fromkeys(self.formulas.turns.values())
+        return tuple(t for t in turns if t.startswith("theta") and t != self.linkage.angle)
+
+    def _constraints(self) -> tuple[list[tuple[str, str]], str]:
+        """Return the constraints, names with code, and what of the module they need."""
+        linkage, formulas = self.linkage, self.formulas
+        results: list[tuple[str, str]] = []
+        helpers = ""
+        if self._turns:
+            results.append(
+                _condition("the_mechanism_closes", " & ".join(f"np.isfinite({t})" for t in self._turns))
+            )
+        varies = any(entry.value is None for entry in linkage.given.values()) or any(
+            e.is_drawn for e in formulas.modes.values()
+        )
+        if varies and formulas.sines:
+            code = " & ".join(f"(abs({sine}) > 0.15)" for sine in formulas.sines.values() if names_in(sine))
+            if code:
+                results.append(_condition("no_dead_point_is_near", code))
+        asked = [q.name for q in self.questions.questions]
+        rates = [n for n in asked if n.startswith(("omega", "alpha")) and n in formulas.quantities]
+        if varies and linkage.speed and rates:
+            slow = [
+                f"(abs({n}) > 0.02 * {linkage.speed}**{2 if n.startswith('alpha') else 1})".replace("**1", "")
+                for n in rates
+            ]
+            code = " & ".join(
+                s.replace(f"0.02 * {linkage.speed})", f"0.02 * abs({linkage.speed}))") for s in slow
+            )
+            results.append(_condition("bodies_turn_visibly", code))
+        reader = ExpressionReader(
+            {
+                **{n: e.unit for n, e in linkage.given.items()},
+                **{n: q.unit for n, q in formulas.quantities.items() if not n.startswith("_")},
+            },
+            {"is_crank": self._is_crank, "transmission_angle": self._transmission_angle},
+        )
+        for number, text in enumerate(self._required()):
+            try:
+                found = reader.condition(text)
+            except CourseworkError as fault:
+                raise linkage.refused(("given", "require"), fault.args[0]) from fault
+            name = f"required_{number + 1}"
+            results.append(_condition(name, found.code))
+        if any("crank_turns" in code for _, code in results):
+            leaves = [n for n in self._leaves(self._turns) if n != linkage.angle]
+            graph = "".join(f"{q.name}, " for q in formulas.transitive(self._turns))
+            helpers = (
+                f"def crank_turns({', '.join(leaves)}):\n"
+                f"    return turns_round(lambda: ({graph}), {self._turns!r}, {linkage.angle!r}, dict({', '.join(f'{n}={n}' for n in leaves)}))"
+            )
+        modes = [f"other_assembly_{p}" for p in formulas.modes]
+        numbers = [
+            q.name
+            for q in self.questions.questions
+            if q.fields.get("kind") in (None, '"angle"') and q.name != "mobility"
+        ]
+        if varies and numbers:
+            wanted = self._affected(numbers)
+            results += [
+                (f"detectable({m!r}, {', '.join(map(repr, wanted[m]))})", "") for m in modes if wanted.get(m)
+            ]
+        return results, helpers
+
+    def _affected(self, numbers: list[str]) -> dict[str, list[str]]:
+        """Return the asked numbers that depend on the side of each assembly, by mistake."""
+        results: dict[str, list[str]] = {}
+        for point in self.formulas.modes:
+            side = f"side_{point}"
+            results[f"other_assembly_{point}"] = [
+                n for n in numbers if any(q.name == side for q in self.formulas.transitive([n]))
+            ]
+        return results
+
+    def _leaves(self, names: tuple[str, ...]) -> list[str]:
+        needed = self.formulas.transitive(names)
+        return list(dict.fromkeys(n for q in needed for n in q.needs if n not in self.formulas.quantities))
+
+    def _required(self) -> list[str]:
+        required = tomllib.loads(self.linkage.source).get("given", {}).get("require", [])
+        required = [required] if isinstance(required, str) else required
+        if not isinstance(required, list) or not all(isinstance(r, str) for r in required):
+            raise self.linkage.refused(
+                ("given", "require"), f'require = ["r2 < r4", "is_crank(2)"]; found {required!r}'
+            )
+        return required
+
+    def _is_crank(self, *arguments: str) -> Expression:
+        if arguments != (self.linkage.driver,):
+            raise self.linkage.refused(
+                ("given", "require"),
+                f"is_crank({self.linkage.driver}) says that the driven body turns all round; found is_crank({', '.join(arguments)})",
+            )
+        return Expression("crank_turns", ("crank_turns",))
+
+    def _transmission_angle(self, *arguments: str) -> Expression:
+        sines = self.formulas.sines
+        if len(arguments) != 1 or arguments[0] not in sines:
+            raise self.linkage.refused(
+                ("given", "require"),
+                f"transmission_angle(B) is that at an inner joint: {', '.join(sines) or 'there is none'}; found {', '.join(arguments)}",
+            )
+        code = f"np.degrees(np.arcsin(np.minimum(abs({sines[arguments[0]]}), 1)))"
+        return Expression(code, names_in(code))
+
+    # ------------------------------------------------------------------ solution
+
+    @cached_property
+    def solution(self) -> str:
+        """Source of the solution's module."""
+        questions, formulas = self.questions, self.formulas
+        quantities = formulas.quantities.values()
+        asked = {q.name for q in questions.questions}
+        units = {q.name: q.unit for q in quantities if not q.name.startswith("_") and q.name not in asked}
+        symbols = {q.name: q.symbol for q in quantities if q.symbol and not q.name.startswith("_")}
+        loops = "".join(
+            f"    {name!r}: ({', '.join(map(vector_code, loop))},),\n"
+            for name, loop in formulas.loops.items()
+        )
+        pieces = [
+            f'"""{self.linkage.name}: solution."""\n',
+            _IMPORTS,
+            _SOLUTION_IMPORTS,
+            f"UNITS = {units!r}\nSYMBOLS = {symbols!r}",
+            f"LOOPS = {{\n{loops}}}" if loops else "",
+            f"MECHANISM = {self._mechanism()}",
+            f"TRACKS = ({''.join(self._tracks())})\nSIDES = ({''.join(self._sides())})",
+            *(f"{n} = {code}" for n, code in formulas.constants.items()),
+            *(q.source for q in quantities),
+            *(m.source for m in questions.mistakes if all(t in formulas.quantities for t in m.targets)),
+            self._residual(),
+        ]
+        return "\n\n\n".join(p for p in pieces if p)
+
+    def _residual(self) -> str:
+        """Return the code of the residual: joints and their rates, from the frames of the bodies."""
+        linkage, formulas = self.linkage, self.formulas
+        names = dict.fromkeys([*formulas.geometry, linkage.angle, *self._turns])
+        slides = [s.distance for s in linkage.slides.values()]
+        names |= dict.fromkeys(
+            [
+                *slides,
+                *(f"side_{g.inner}" for g in formulas.groups if isinstance(g, Dyad) and g.kind == "RRR"),
+            ]
+        )
+        free = [formulas.reference[b] for b in linkage.bodies if not self._holder(b)]
+        names |= dict.fromkeys(f"{axis}{point}" for point in free for axis in "xy")
+        order = 0
+        asked = {q.name for q in self.questions.questions}
+        needed = {q.name for q in formulas.transitive(sorted(asked))}
+        if linkage.speed and any(n.startswith(("omega", "v_")) or n.endswith("_dot") for n in needed | asked):
+            order = 1
+        if linkage.speed and any(
+            n.startswith(("alpha", "a_")) or n.endswith("_ddot") for n in needed | asked
+        ):
+            order = 2
+        stems = ("", "omega", "alpha")[1 : order + 1]
+        for stem in stems:
+            names |= dict.fromkeys(t.replace("theta", stem, 1) for t in self._turns)
+            own = linkage.angle.replace("theta", stem, 1)
+            if own in linkage.given:
+                names[own] = None
+        listed = ", ".join(names)
+        values = ", ".join(f"{n}={n}" for n in names)
+        return f"def residual({listed}):\n    return closure_gaps(MECHANISM, TRACKS, SIDES, {linkage.angle!r}, {order}, dict({values}))"
+
+    def _mechanism(self) -> str:
+        linkage, formulas = self.linkage, self.formulas
+        ground = ", ".join(f"{p!r}: {_place(place)}" for p, place in linkage.ground.items())
+        bodies = []
+        held = set(linkage.ground)
+        for name in formulas.order:
+            if name == GROUND:
+                continue
+            body = linkage.bodies[name]
+            turn = formulas.turns[name]
+            angle = repr(turn) if turn.startswith("theta") else turn
+            start = body.at if body.at in held else next((p for p in body.points if p in held), None)
+            origin = ""
+            if start is None:
+                start = formulas.reference[name]
+                origin = f", origin=lambda x{start}, y{start}: x{start} + 1j * y{start}"
+            base = linkage.place(start, name)
+            places = ", ".join(
+                f"{p!r}: {_shifted(place, base)}" for p, place in body.points.items() if p != start
+            )
+            bodies.append(f"        Body({name!r}, {angle}, {start!r}, {{{places}}}{origin}),")
+            held |= set(body.points)
+        slides = [
+            f"        Slide({s.at!r}, {s.of!r}, {s.on!r}, {_code(s.along)})," for s in linkage.slides.values()
+        ]
+        gears = [
+            f"        Gear({g.first!r}, {g.second!r}, {g.carrier!r}, ({_code(g.radii[0])}, {_code(g.radii[1])}), {g.inner}"
+            f"{self._centres(g.first, g.second, g.carrier)}),"
+            for g in linkage.gears
+        ]
+        loads = []
+        for load in linkage.loads:
+            if load.moment is not None:
+                loads.append(f"        Load({load.on!r}, moment={_code(load.moment)}),")
+            elif load.force is not None:
+                loads.append(
+                    f"        Load({load.on!r}, force={_code(load.force)}, angle={_code(load.angle)}),"
+                )
+        pieces = [f"    ground={{{ground}}},", "    bodies=(", *bodies, "    ),"]
+        for name, lines in (("slides", slides), ("gears", gears), ("loads", loads)):
+            if lines:
+                pieces += [f"    {name}=(", *lines, "    ),"]
+        return "Mechanism(\n" + "\n".join(pieces) + "\n)"
+
+    def _holder(self, body: str) -> str:
+        """Return the point of a body that the ground or a body placed before it holds; none where slides alone hold it."""
+        before = self.formulas.order[: self.formulas.order.index(body)]
+        points = self.linkage.bodies[body].points
+        return next((p for p in points if set(self.linkage.holders(p)) & set(before)), "")
+
+    def _tracks(self) -> list[str]:
+        return [
+            f"Track({s.at!r}, {s.of!r}, {s.on!r}, {_place(s.through)}, {_code(s.along)}, {s.distance!r}), "
+            for s in self.linkage.slides.values()
+        ]
+
+    def _sides(self) -> list[str]:
+        """Return the triangles of the groups that have a side: inner joint, both outer ones, and the quantity of the side."""
+        dyads = [g for g in self.formulas.groups if isinstance(g, Dyad) and g.kind == "RRR"]
+        return [f"({d.inner!r}, {d.outer_p!r}, {d.outer_q!r}, 'side_{d.inner}'), " for d in dyads]
+
+    def _centres(self, first: str, second: str, carrier: str) -> str:
+        points = []
+        for body in (first, second):
+            shared = [p for p, b in self.linkage.pins.items() if body in b and carrier in b]
+            points.append(shared[0] if shared else "")
+        return f", {tuple(points)!r}" if any(points) else ""
+
+    # --------------------------------------------------------------------- texts
+
+    def text(self, kind: str, lang: str) -> str:
+        """Return a text as its author would have written it.
+
+        Parameters
+        ----------
+        kind
+            ``exercises`` or ``solutions``.
+        lang
+            Language.
+
+        Returns
+        -------
+        Markdown of named sections, a template of Jinja2.
+        """
+        of = exercise_text if kind == "exercises" else solution_text
+        return of(self.formulas, self.questions, lang)
+
+    def module(self, kind: str, name: str) -> ModuleType:
+        """Return the module of the exercise or of its solution.
+
+        Parameters
+        ----------
+        kind
+            ``exercises`` or ``solutions``.
+        name
+            Name of the module in Python.
+
+        Returns
+        -------
+        The module, which is also in ``sys.modules``.
+        """
+        with author_faults():
+            source = self.exercise if kind == "exercises" else self.solution
+        file = f"{self.linkage.path}:{kind}"
+        module = ModuleType(name)
+        module.__file__ = file
+        linecache.cache[file] = (len(source), None, source.splitlines(keepends=True), file)
+        exec(
+            compile(source, file, "exec"), module.__dict__
+        )  # written from names and expressions that were read
+        sys.modules[name] = module
+        return module
+
+
+@lru_cache(maxsize=256)
+def _compiled(path: Path, shown: str, changed: int) -> CompiledLinkage:
+    return CompiledLinkage(read_linkage(path, shown))
+
+
+def compiled(path: Path, shown: str = "") -> CompiledLinkage:
+    """Return the compiled mechanism of a file; anew where the file has changed.
+
+    Parameters
+    ----------
+    path
+        The file.
+    shown
+        Name of the file in messages; its path unless told.
+
+    Returns
+    -------
+    The mechanism.
+
+    Raises
+    ------
+    BadCourse
+        The file states what makes no sense, with the line.
+    """
+    with author_faults():
+        result = _compiled(path, shown or str(path), path.stat().st_mtime_ns)
+        result.questions  # noqa: B018  # what the file asks is read with it
+        return result
+
+
+@dataclass(frozen=True)
+class CompiledText:
+    """Text of a mechanism's exercise, read as a file is: the part of a path that readers of texts use."""
+
+    file: Path
+    shown: str
+    kind: str
+    lang: str
+
+    @property
+    def parent(self) -> Path:
+        return self.file.parent
+
+    @property
+    def name(self) -> str:
+        return f"{self.file.stem}.{self.lang}.md.j2"
+
+    def relative_to(self, root: Path) -> Path:
+        """Return the mechanism's file as seen from a folder."""
+        return self.file.relative_to(root)
+
+    def exists(self) -> bool:
+        """Return whether there are sentences in the language."""
+        return self.lang in spoken()
+
+    def stat(self) -> os.stat_result:
+        """Return what the system says of the mechanism's file, which changes the text when it changes."""
+        return self.file.stat()
+
+    def read_text(self, encoding: str = "utf-8") -> str:
+        """Return the text."""
+        del encoding
+        return compiled(self.file, self.shown).text(self.kind, self.lang)
+
+
+def _plain(quantity: Quantity) -> str:
+    """Return a quantity as code without its stable way."""
+    return f"def {quantity.name}({', '.join(quantity.needs)}):\n    return {quantity.code}"
+
+
+def _condition(name: str, code: str) -> tuple[str, str]:
+    return name, f"def {name}({', '.join(names_in(code))}):\n    return {code}"
+
+
+def _given(entry: GivenEntry) -> str:
+    if entry.value is not None:
+        return f"fixed({entry.value:.15g}, unit={entry.unit!r})"
+    low, high = (
+        b.code if b.is_number else f"lambda {', '.join(b.names)}: {b.code}" for b in (entry.low, entry.high)
+    )
+    more = ", nonzero=True" if entry.nonzero else ""
+    more += ", positive=True" if entry.positive else ""
+    return f"drawn({low}, {high}, step={entry.step}, unit={entry.unit!r}{more})"
+
+
+def _code(expression: Expression) -> str:
+    """Return an expression as a place of a mechanism: a name, a number or a function."""
+    if expression.is_name:
+        return repr(expression.code)
+    return (
+        expression.code
+        if expression.is_number
+        else f"lambda {', '.join(expression.names)}: {expression.code}"
+    )
+
+
+def _complex(place: Place) -> str:
+    if place.radius is not None:
+        return f"polar({place.radius.code}, {place.angle.code})"
+    return f"{place.x.code} + 1j * ({place.y.code})" if not place.y.is_zero else place.x.code
+
+
+def _place(place: Place) -> str:
+    if place.radius is None and place.y.is_zero:
+        return _code(place.x)
+    code = _complex(place)
+    return f"lambda {', '.join(place.names)}: {code}" if place.names else code
+
+
+def _shifted(place: Place, base: Place) -> str:
+    """Return a place seen from another of the same frame."""
+    if base.is_origin:
+        return _place(place)
+    names = dict.fromkeys([*place.names, *base.names])
+    code = f"({_complex(place)}) - ({_complex(base)})"
+    return f"lambda {', '.join(names)}: {code}" if names else code

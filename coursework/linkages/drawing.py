@@ -1,0 +1,160 @@
+"""Figure of a mechanism: code that draws its bodies, joints and driver to scale."""
+
+from __future__ import annotations
+
+from cmath import phase
+
+from coursework.linkages.formulas import FormulaWriter, middle_value
+from coursework.linkages.linkage_file import GROUND, SlideEntry
+from coursework.linkages.terms import Heading
+
+
+class FigureWriter:
+    """Writer of the figure.
+
+    Parameters
+    ----------
+    formulas
+        The quantities of the mechanism.
+    """
+
+    def __init__(self, formulas: FormulaWriter) -> None:
+        self.formulas, self.linkage = formulas, formulas.linkage
+        self.elements: list[str] = []
+        self._guides = {s.on for s in self.linkage.slides.values()}
+        self._blocks = {
+            s.of for s in self.linkage.slides.values() if len(self.linkage.bodies[s.of].points) == 1
+        }
+        self._ground()
+        for body in self.linkage.bodies:
+            self._body(body)
+        for slide in self.linkage.slides.values():
+            self._slide(slide)
+        self._joints()
+        self._driver()
+
+    @property
+    def code(self) -> str:
+        """The figure as code of one call."""
+        return "Figure(\n        " + ",\n        ".join(self.elements) + ",\n    )"
+
+    def _add(self, element: str) -> None:
+        self.elements.append(element)
+
+    def _at(self, point: str) -> str:
+        return self.formulas.complex(point)
+
+    def _ground(self) -> None:
+        """Draw the frame between two fixed pivots where its length is a quantity."""
+        points = [p for p in self.linkage.ground if p in self.linkage.pins]
+        for start, end in zip(points, points[1:], strict=False):
+            first, second = self.linkage.ground[start], self.linkage.ground[end]
+            if first.is_origin and second.radius is None and second.y.is_zero and second.x.is_name:
+                self._add(
+                    f'line({self._at(start)}, {self._at(end)}, dashed=True, label=r"{self.formulas.symbol(second.x.code)}")'
+                )
+
+    def _body(self, body: str) -> None:
+        points = [
+            p for p in self.linkage.bodies[body].points if p in self.linkage.pins or self._is_end(p, body)
+        ]
+        if body in self._blocks or len(points) < 2:
+            return
+        if body in self._guides:
+            self._guide(body, points)
+            return
+        self._plate(body, points)
+
+    def _plate(self, body: str, points: list[str]) -> None:
+        formulas = self.formulas
+        if len(points) == 2:
+            arm = formulas.arm(body, *points)
+            label = (
+                f', label=r"{formulas.symbol(arm.length.code)}"'
+                if arm.length.code in self.linkage.given
+                else ""
+            )
+            self._add(f"link({self._at(points[0])}, {self._at(points[1])}{label})")
+            return
+        places = {p: middle_value(formulas.local(p, body), self.linkage) for p in points}
+        centre = sum(places.values()) / len(places)
+        flat = max(
+            abs(((z - centre).conjugate() * (w - centre)).imag)
+            for z in places.values()
+            for w in places.values()
+        )
+        size = max(abs(z - centre) for z in places.values()) or 1.0
+        if flat < 0.02 * size**2:
+            way = max((z - centre for z in places.values()), key=abs)
+            ordered = sorted(points, key=lambda p: ((places[p] - centre) / way).real)
+            for start, end in zip(ordered, ordered[1:], strict=False):
+                self._add(f"link({self._at(start)}, {self._at(end)})")
+            return
+        ordered = sorted(points, key=lambda p: phase(places[p] - centre))
+        self._add(f"link({', '.join(map(self._at, ordered))})")
+
+    def _is_end(self, point: str, body: str) -> bool:
+        """Return whether a point that is no pin is drawn as the end of its body: a tracer point, or one that slides."""
+        return (
+            body not in self._blocks
+            and len(self.linkage.bodies[body].points) > 1
+            and point in self.linkage.bodies[body].points
+        )
+
+    def _guide(self, body: str, points: list[str]) -> None:
+        """Draw a slotted body: its slot as far as the block and its own points go, and bars to points off it."""
+        slide = next(s for s in self.linkage.slides.values() if s.on == body)
+        straight = slide.along.is_zero and slide.through.is_origin
+        on_line = [p for p in points if straight and self.formulas.local(p, body).y.vanishes]
+        unit = f"polar(1, {(self.formulas.heading(body) + Heading.of(slide.along.code)).code})"
+        start = self._through(slide)
+        reach = f"1.25 * max(abs({self._distance(slide)}), 1.0)"
+        more = [f"abs({self._at(p)} - {start})" for p in on_line if p != slide.through_name]
+        length = f"max({', '.join([reach, *more])})" if more else reach
+        self._add(f"slot_link({start}, {start} + {unit} * {length})")
+        off = [p for p in points if p not in on_line]
+        if off:
+            self._plate(body, [*dict.fromkeys([on_line[0] if on_line else points[0], *off])])
+
+    def _through(self, slide: SlideEntry) -> str:
+        if slide.through_name:
+            return self._at(slide.through_name)
+        return f"({self.formulas.world(slide.through, slide.on).complex})"
+
+    def _distance(self, slide: SlideEntry) -> str:
+        """Return the distance along a slide in hidden points, as code."""
+        return f"{self._at(slide.at)} - {self._through(slide)}"
+
+    def _slide(self, slide: SlideEntry) -> None:
+        heading = self.formulas.heading(slide.on) + Heading.of(slide.along.code)
+        place = self._at(slide.at)
+        driver = self.linkage.bodies[self.linkage.driver]
+        end = next((p for p in driver.points if p != driver.at), driver.at)
+        half = f"0.6 * abs({self._at(end)} - {self._at(driver.at)})"
+        unit = f"polar(1, {heading.code})"
+        if slide.on == GROUND:
+            self._add(f"rail({place} - {half} * {unit}, {place} + {half} * {unit})")
+        self._add(f"slider({place}, {heading.code})")
+
+    def _joints(self) -> None:
+        for point in self.linkage.points:
+            if point in self.linkage.pins:
+                kind = "ground_pivot" if point in self.linkage.ground else "pin"
+                self._add(f'{kind}({self._at(point)}, "{_label(point)}")')
+            elif (
+                any(self._is_end(point, b) for b in self.linkage.holders(point) if b != GROUND)
+                or point in self.linkage.slides
+            ):
+                self._add(f'point({self._at(point)}, "{_label(point)}")')
+
+    def _driver(self) -> None:
+        driver = self.linkage.bodies[self.linkage.driver]
+        end = next((p for p in driver.points if p != driver.at), driver.at)
+        start = self._at(driver.at)
+        angle = self.linkage.angle
+        self._add(f"line({start}, {start} + 0.6 * abs({self._at(end)} - {start}), dashed=True)")
+        self._add(f'angle_mark({start}, 0, {angle}, r"{self.formulas.symbol(angle)}")')
+
+
+def _label(point: str) -> str:
+    return point if len(point) == 1 else f"{point[0]}_{point[1:]}"

@@ -1,0 +1,397 @@
+"""What a mechanism's file asks: parts of the exercise, the quantities behind them, their usual mistakes."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+from coursework.errors import nearest
+from coursework.linkages.formulas import FormulaWriter, UsualMistake, over
+from coursework.linkages.linkage_file import GROUND
+from coursework.linkages.terms import Heading, Plane, Sum
+
+_CENTRE = re.compile(r"I(\d+|[a-z][a-z0-9]*?)_?(\d+|[a-z][a-z0-9]*)\Z")
+
+
+@dataclass(frozen=True)
+class Question:
+    """Part of the exercise: its fields as code, and the sentence that asks it with its words."""
+
+    name: str
+    fields: Mapping[str, str]
+    key: str
+    words: Mapping[str, str] = field(default_factory=dict)
+
+    @property
+    def source(self) -> str:
+        """The part as Python code."""
+        listed = "".join(f", {name}={value}" for name, value in self.fields.items())
+        return f'Part("{self.name}"{listed})'
+
+
+class QuestionWriter:
+    """Writer of the questions of a mechanism, in the order of its file.
+
+    Parameters
+    ----------
+    formulas
+        The quantities of the mechanism, to which those of the questions are added.
+    """
+
+    def __init__(self, formulas: FormulaWriter) -> None:
+        self.formulas, self.linkage = formulas, formulas.linkage
+        self.questions: list[Question] = []
+        self.mistakes: list[UsualMistake] = list(formulas.mistakes)
+        self.polygons: list[str] = []
+        writers: dict[str, Callable[[Any], None]] = {
+            "mobility": self._mobility,
+            "class": self._class,
+            "positions": self._positions,
+            "velocities": self._velocities,
+            "accelerations": self._accelerations,
+            "polygon": self._polygon,
+            "instant_centres": self._centres,
+            "advantage": self._advantage,
+            "torque": self._torque,
+        }
+        for key, value in self.linkage.ask.items():
+            if key != "points" and value is not False:
+                writers[key](value)
+        self._weigh()
+
+    def _weigh(self) -> None:
+        known = {q.name for q in self.questions}
+        for name, points in self.linkage.ask.get("points", {}).items():
+            if name not in known:
+                raise self.linkage.refused(("ask", "points"), f"no question {name!r}{nearest(name, known)}")
+            for number, question in enumerate(self.questions):
+                if question.name == name:
+                    fields = {**question.fields, "points": f"{points:g}"}
+                    self.questions[number] = Question(name, fields, question.key, question.words)
+
+    def _ask(self, name: str, key: str, words: Mapping[str, str] | None = None, **fields: str) -> None:
+        if any(q.name == name for q in self.questions):
+            raise self.linkage.refused(("ask",), f"{name} is asked twice")
+        self.questions.append(Question(name, fields, key, words or {}))
+
+    # ----------------------------------------------------------------- structure
+
+    def _mobility(self, _: Any) -> None:
+        linkage = self.linkage
+        bodies, higher = len(linkage.bodies), len(linkage.gears)
+        pairs = sum(len(b) - 1 for b in linkage.pins.values()) + len(linkage.slides)
+        rest = f" - {higher}" if higher else ""
+        words = {"n": str(bodies), "b": str(pairs), "h": str(higher)}
+        self.formulas.write(
+            "mobility",
+            f"3 * {bodies} - 2 * {pairs}{rest}",
+            "1",
+            "mobility_gears" if higher else "mobility",
+            "w",
+            words=words,
+        )
+        self._ask("mobility", "mobility", kind='"integer"')
+        self.mistakes.append(
+            UsualMistake(
+                "frame_counted",
+                ("mobility",),
+                (f"3 * {bodies + 1} - 2 * {pairs}{rest}",),
+                "frame_counted",
+                {},
+            )
+        )
+        multiple = pairs - len(linkage.pins) - len(linkage.slides)
+        if multiple:
+            code = f"3 * {bodies} - 2 * {pairs - multiple}{rest}"
+            point = next(p for p, b in linkage.pins.items() if len(b) > 2)
+            self.mistakes.append(
+                UsualMistake(
+                    "multiple_pin_counted_once",
+                    ("mobility",),
+                    (code,),
+                    "multiple_pin_counted_once",
+                    {"B": point},
+                )
+            )
+
+    def _class(self, _: Any) -> None:
+        if self.linkage.gears:
+            raise self.linkage.refused(
+                ("ask", "class"), "Assour groups have pins and slides alone; this mechanism has gears"
+            )
+        names = ("I", "II", "III", "IV", "V", "VI")
+        rank = names[self.formulas.rank - 1]
+        self.formulas.write(
+            "mechanism_class",
+            repr(rank),
+            "1",
+            "mechanism_class",
+            words={"groups": str(len(self.formulas.groups))},
+        )
+        self._ask("mechanism_class", "mechanism_class", kind='"choice"', choices=repr(names[:4]))
+
+    # ------------------------------------------------------------------- motion
+
+    def _positions(self, names: list[str]) -> None:
+        for name in names:
+            at = ("ask", "positions")
+            if name in self._moving_points:
+                self._vector(name, self.formulas.at(name), "mm", "point", name, "point")
+            elif name in self._turns:
+                self._ask(name, "angle", self._turn_words(name), unit='"deg"', kind='"angle"')
+            elif name in self._slides or re.fullmatch(r"[xy][A-Z]\d*", name):
+                self._known(name, at)
+                key = "distance" if name in self._slides else "coordinate"
+                self._ask(
+                    name,
+                    key,
+                    self._slide_words(name) if name in self._slides else {"B": name[1:], "axis": name[0]},
+                    unit='"mm"',
+                )
+            else:
+                self._unknown(name, at, [*self._turns, *self._moving_points, *self._slides])
+
+    def _velocities(self, names: list[str]) -> None:
+        self._needs_speed("velocities")
+        self._rates(
+            names, "velocities", "omega", "rad/s", "V_", "mm/s", "_dot", self.formulas.velocity, "velocity"
+        )
+
+    def _accelerations(self, names: list[str]) -> None:
+        self._needs_speed("accelerations")
+        self._rates(
+            names,
+            "accelerations",
+            "alpha",
+            "rad/s^2",
+            "a_",
+            "mm/s^2",
+            "_ddot",
+            self.formulas.acceleration,
+            "acceleration",
+        )
+
+    def _rates(
+        self, names: list[str], key: str, stem: str, unit: str, prefix: str, per: str, ending: str,
+        of: Callable[[str], Plane], what: str,
+    ) -> None:  # fmt: skip
+        turns = {turn.replace("theta", stem, 1): turn for turn in self._turns}
+        points = {f"{prefix}{p}": p for p in self._moving_points}
+        slides = {s + ending: s for s in self._slides}
+        for name in names:
+            if name in turns:
+                self._ask(name, f"angular_{what}", self._turn_words(turns[name]), unit=f'"{unit}"')
+            elif name in points:
+                point = points[name]
+                mark = "V" if what == "velocity" else "a"
+                self._vector(
+                    name, of(point), per, "vector", rf"\vec{{{mark}}}_{{{point}}}", what, {"B": point}
+                )
+            elif name in slides:
+                self._ask(name, f"slide_{what}", self._slide_words(slides[name]), unit=f'"{per}"')
+            else:
+                self._unknown(name, ("ask", key), [*turns, *points, *slides])
+
+    def _vector(
+        self,
+        name: str,
+        vector: Plane,
+        unit: str,
+        kind: str,
+        symbol: str,
+        key: str,
+        words: Mapping[str, str] | None = None,
+    ) -> None:
+        words = words or {"B": name}
+        self.formulas.write(
+            name,
+            f"np.stack(np.broadcast_arrays({vector.x.code}, {vector.y.code}), -1)",
+            unit,
+            f"vector_{key}",
+            symbol,
+            words=words,
+        )
+        self._ask(name, key, words, unit=f'"{unit}"', kind=f'"{kind}"', points="2")
+
+    def _needs_speed(self, key: str) -> None:
+        linkage = self.linkage
+        if not linkage.speed:
+            speed = linkage.angle.replace("theta", "omega", 1)
+            raise linkage.refused(
+                ("ask", key), f'{key} need the speed of the driver: [given], then {speed} = "12 rad/s"'
+            )
+
+    @property
+    def _turns(self) -> tuple[str, ...]:
+        """Angles that follow from the driver's, each once."""
+        turns = dict.fromkeys(t for b, t in self.formulas.turns.items() if b != GROUND)
+        return tuple(t for t in turns if t.startswith("theta") and t != self.linkage.angle)
+
+    @property
+    def _moving_points(self) -> tuple[str, ...]:
+        return tuple(p for p in self.linkage.points if p not in self.linkage.ground)
+
+    @property
+    def _slides(self) -> tuple[str, ...]:
+        return tuple(s.distance for s in self.linkage.slides.values())
+
+    def _turn_words(self, turn: str) -> dict[str, str]:
+        body = next(b for b, t in self.formulas.turns.items() if t == turn)
+        return {"body": body, "symbol": self.formulas.symbol(turn)}
+
+    def _slide_words(self, distance: str) -> dict[str, str]:
+        slide = next(s for s in self.linkage.slides.values() if s.distance == distance)
+        return {"B": slide.at, "of": slide.of, "on": slide.on}
+
+    def _known(self, name: str, at: tuple[str, str]) -> None:
+        if name[0] in "xy" and name[1:] in self._moving_points:
+            self.formulas.at(name[1:])
+        if name not in self.formulas.quantities:
+            self._unknown(name, at, self.formulas.quantities)
+
+    def _unknown(self, name: str, at: tuple[str, str], able: Any) -> None:
+        listed = [n for n in able if not n.startswith("_")]
+        raise self.linkage.refused(
+            at, f"no quantity {name!r}{nearest(name, listed)}; there are {', '.join(listed)}"
+        )
+
+    # --------------------------------------------------------- centres and forces
+
+    def _centres(self, names: list[str]) -> None:
+        self._needs_speed("instant_centres")
+        at = ("ask", "instant_centres")
+        bodies = {"1": GROUND, **{b: b for b in self.linkage.bodies}}
+        for name in names:
+            match = _CENTRE.match(name)
+            pair = next(
+                ((bodies[name[1:k].rstrip("_")], bodies[name[k:].lstrip("_")]) for k in range(2, len(name))
+                 if name[1:k].rstrip("_") in bodies and name[k:].lstrip("_") in bodies), None
+            )  # fmt: skip
+            if match is None or pair is None or pair[0] == pair[1]:
+                raise self.linkage.refused(
+                    at, f"an instant centre is I13: two bodies, 1 the ground; found {name!r}"
+                )
+            self._centre(name, *pair)
+
+    def _centre(self, name: str, first: str, second: str) -> None:
+        formulas = self.formulas
+        shared = [p for p, b in self.linkage.pins.items() if first in b and second in b]
+        words = {"I": name, "i": "1" if first == GROUND else first, "j": "1" if second == GROUND else second}
+        if shared:
+            place = formulas.at(shared[0])
+            step = "centre_pin"
+            words["B"] = shared[0]
+        else:
+            rates = [formulas.omega(body) for body in (first, second)]
+            if rates[0] == rates[1]:
+                raise self.linkage.refused(
+                    ("ask", "instant_centres"),
+                    f"{name} is at infinity in every position: bodies {words['i']} and {words['j']} are turned alike",
+                )
+            moving = [b for b in (first, second) if b != GROUND]
+            if len(moving) == 1:
+                start, rate = formulas.reference[moving[0]], formulas.omega(moving[0])
+                there, v = formulas.at(start), formulas.velocity(start)
+                codes = (
+                    (there.x - Sum.of(over(v.y, Sum.of(rate)))).code,
+                    (there.y + Sum.of(over(v.x, Sum.of(rate)))).code,
+                )
+            else:
+                # z (w_i - w_j) = w_i P_i - w_j P_j + (V_j - V_i) / i, as a vector
+                fields = []
+                for body, rate in zip(moving, rates, strict=True):
+                    here = formulas.at(formulas.reference[body]).times(rate)
+                    v = formulas.velocity(formulas.reference[body])
+                    fields.append(Plane(here.x - v.y, here.y + v.x))
+                above, below = fields[0] - fields[1], Sum.of(rates[0]) - Sum.of(rates[1])
+                codes = over(above.x, below), over(above.y, below)
+            for axis, code in zip("xy", codes, strict=True):
+                formulas.write(
+                    f"{axis}_{name}",
+                    code,
+                    "mm",
+                    f"centre_{axis}",
+                    f"{axis}_{{{_centre_index(words)}}}",
+                    words=words,
+                )
+            place = Plane(Sum.of(f"x_{name}"), Sum.of(f"y_{name}"))
+            step = "centre"
+        formulas.write(
+            name,
+            f"np.stack(np.broadcast_arrays({place.x.code}, {place.y.code}), -1)",
+            "mm",
+            step,
+            _centre_index(words),
+            words=words,
+        )
+        self._ask(name, "instant_centre", words, unit='"mm"', kind='"point"', points="2")
+
+    def _advantage(self, value: Any) -> None:
+        self._needs_speed("advantage")
+        formulas, linkage = self.formulas, self.linkage
+        turning = [b for b in linkage.bodies if formulas.turns[b].startswith("theta") and b != linkage.driver]
+        on_ground = [b for b in turning if any(p in linkage.ground for p in linkage.bodies[b].points)]
+        body = (on_ground or turning)[-1] if value is True and turning else str(value)
+        if body not in turning:
+            raise linkage.refused(
+                ("ask", "advantage"),
+                f"the advantage is that of a body that turns: {', '.join(turning)}; found {value!r}",
+            )
+        words = {"body": body, "driver": linkage.driver}
+        formulas.write(
+            "advantage", f"{linkage.speed} / {formulas.omega(body)}", "1", "advantage", "m_a", words=words
+        )
+        self._ask("advantage", "advantage", words)
+        self.mistakes.append(
+            UsualMistake(
+                "advantage_upside_down",
+                ("advantage",),
+                (f"{formulas.omega(body)} / {linkage.speed}",),
+                "advantage_upside_down",
+                words,
+                "inverse",
+            )
+        )
+
+    def _torque(self, _: Any) -> None:
+        self._needs_speed("torque")
+        formulas, linkage = self.formulas, self.linkage
+        terms = []
+        for load in linkage.loads:
+            if load.moment is not None:
+                rate = formulas.omega(load.on)
+                terms.append(f"{_factor(load.moment.code)} * {rate}")
+            else:
+                assert load.force is not None
+                v = formulas.velocity(load.on)
+                along = v.along(Heading.of(load.angle.code)).times(load.force.code)
+                terms.append(f"({along.code}) / 1000")
+        code = f"-({' + '.join(terms)}) / {linkage.speed}"
+        words = {"driver": linkage.driver}
+        formulas.write("torque", code, "N*m", "torque", r"\Gamma", words=words)
+        self._ask("torque", "torque", words, unit='"N*m"', points="2")
+
+    # ------------------------------------------------------------------ polygons
+
+    def _polygon(self, names: list[str]) -> None:
+        for name in names:
+            if name not in ("velocity", "acceleration"):
+                raise self.linkage.refused(
+                    ("ask", "polygon"), f"a polygon is of 'velocity' or 'acceleration'; found {name!r}"
+                )
+        self._needs_speed("polygon")
+        self.polygons = list(dict.fromkeys(names))
+
+
+def _centre_index(words: Mapping[str, str]) -> str:
+    return (
+        f"I_{{{words['i']}{words['j']}}}"
+        if len(words["i"] + words["j"]) == 2
+        else f"I_{{{words['i']},{words['j']}}}"
+    )
+
+
+def _factor(code: str) -> str:
+    return code if re.fullmatch(r"[\w.]+", code) else f"({code})"

@@ -1,0 +1,378 @@
+"""Texts of a mechanism's exercise: sentences of a language, filled with its points, bodies and quantities."""
+
+from __future__ import annotations
+
+import ast
+import re
+import tomllib
+from collections.abc import Mapping, Sequence
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+from coursework.errors import BadCourse
+from coursework.linkages.expressions import Expression
+from coursework.linkages.formulas import FormulaWriter
+from coursework.linkages.groups import Dyad, LargeGroup, Wheel
+from coursework.linkages.linkage_file import GROUND, Place, SlideEntry
+from coursework.linkages.questions import QuestionWriter
+from coursework.quantities.formula_latex import PrintedName, tree_latex
+
+_FOLDER = Path(__file__).parents[1] / "language" / "linkages"
+_PLACEHOLDER = re.compile(r"<(\w+)>")
+_BODIES = ("body", "p", "q", "other", "of", "on", "driver", "carrier")  #: words that name bodies
+_POINTS = ("B", "P", "Q")
+
+
+@cache
+def sentences(lang: str) -> Mapping[str, Mapping[str, str]]:
+    """Return the sentences of a language by table.
+
+    Raises
+    ------
+    BadCourse
+        There are none in this language.
+    """
+    file = _FOLDER / f"{lang}.toml"
+    if not file.exists():
+        raise BadCourse(f"mechanisms have no sentences in {lang!r}: {file.name} would hold them")
+    return tomllib.loads(file.read_text("utf-8"))
+
+
+def spoken() -> tuple[str, ...]:
+    """Return the languages that have sentences."""
+    return tuple(sorted(f.stem for f in _FOLDER.glob("*.toml")))
+
+
+class SentenceWriter:
+    """Writer of sentences about a mechanism in a language."""
+
+    def __init__(self, formulas: FormulaWriter, lang: str) -> None:
+        self.formulas, self.linkage, self.lang = formulas, formulas.linkage, lang
+        self.tables = sentences(lang)
+
+    def say(self, table: str, key: str, words: Mapping[str, str] | None = None) -> str:
+        """Return a sentence with its words in place."""
+        texts = self.tables[table]
+        known = self._words(words or {})
+
+        def word(match: re.Match[str]) -> str:
+            return known.get(match[1], match[0])
+
+        return _PLACEHOLDER.sub(word, texts[key])
+
+    def has(self, table: str, key: str) -> bool:
+        """Return whether a table has a sentence of this key."""
+        return key in self.tables[table]
+
+    def _words(self, words: Mapping[str, str]) -> dict[str, str]:
+        result = {}
+        for name, value in words.items():
+            if name in _BODIES and value in (GROUND, *self.linkage.bodies):
+                result[name] = self.body(value)
+                result[f"of_{name}"] = self._of(result[name])
+            elif name in _POINTS and value:
+                result[name] = point_latex(value)
+            elif name in ("s", "t") and value:
+                result[name] = self.formulas.symbol(value)
+            else:
+                result[name] = value
+        return result
+
+    def _of(self, body: str) -> str:
+        text = self.tables["body"]["of"].replace("<body>", body)
+        return text.replace("de le ", "du ") if self.lang == "fr" else text
+
+    def body(self, name: str) -> str:
+        """Return what a body is called: by its points."""
+        if name == GROUND:
+            return self.tables["body"]["frame"]
+        points = [*self.linkage.bodies[name].points]
+        joints = [p for p in points if p in self.linkage.pins] or points
+        kind = (
+            "crank"
+            if name == self.linkage.driver and len(points) == 2
+            else ("block", "bar")[len(points) == 2]
+            if len(points) < 3
+            else "plate"
+        )
+        if any(name in (g.first, g.second) for g in self.linkage.gears) and len(points) == 1:
+            kind = "wheel"
+        listed = "".join(map(point_latex, points if kind != "block" else joints[:1]))
+        return self.tables["body"][kind].replace("<points>", listed)
+
+    def latex(self, expression: Expression) -> str:
+        """Return an expression in LaTeX; a number alone as it is printed."""
+        shown = {
+            n: PrintedName(self.formulas.symbol(n), False, "angle" if self._is_angle(n) else "")
+            for n in expression.names
+        }
+        return tree_latex(ast.parse(expression.code, mode="eval").body, shown, {})
+
+    def _is_angle(self, name: str) -> bool:
+        entry = self.linkage.given.get(name)
+        return entry is not None and entry.unit == "deg"
+
+    def degrees(self, expression: Expression) -> str:
+        """Return a direction in LaTeX."""
+        return rf"{self.latex(expression)}^{{\circ}}" if expression.is_number else self.latex(expression)
+
+    def coordinates(self, place: Place) -> tuple[str, str]:
+        """Return both coordinates of a place in LaTeX."""
+        if place.radius is None:
+            return self.latex(place.x), self.latex(place.y)
+        radius, angle = place.radius.code, place.angle.code
+        names = place.names
+        return tuple(  # type: ignore[return-value]  # of two
+            self.latex(Expression(f"{_factor(radius)} * {function}({angle})", names))
+            for function in ("cos", "sin")
+        )
+
+    def listed(self, texts: Sequence[str]) -> str:
+        """Return texts as a list with an *and*."""
+        if len(texts) < 2:
+            return "".join(texts)
+        return ", ".join(texts[:-1]) + self.tables["statement"]["and"] + texts[-1]
+
+
+def point_latex(point: str) -> str:
+    """Return the name of a point in LaTeX: ``O2`` is ``O_2``."""
+    return point if len(point) == 1 else f"{point[0]}_{{{point[1:]}}}"
+
+
+def _factor(code: str) -> str:
+    return code if re.fullmatch(r"[\w.]+", code) else f"({code})"
+
+
+# -------------------------------------------------------------------------- statement
+
+
+def exercise_text(formulas: FormulaWriter, questions: QuestionWriter, lang: str) -> str:
+    """Return the text of the exercise as its author would have written it.
+
+    Parameters
+    ----------
+    formulas, questions
+        What the file states, compiled.
+    lang
+        Language.
+
+    Returns
+    -------
+    Markdown of named sections, a template of Jinja2.
+    """
+    writer = SentenceWriter(formulas, lang)
+    linkage = formulas.linkage
+    pieces = [f"# {_title(linkage.title, lang, linkage.name)}", _statement(writer)]
+    for point, entry in formulas.modes.items():
+        if entry.is_drawn:
+            key = "mode" if entry.end else "mode_slide"
+            words = {"B": point, "P": entry.start, "Q": entry.end}
+            pieces.append(f"## mode_{point}\n{writer.say('statement', key, words)}")
+    for question in questions.questions:
+        own = {"own": formulas.symbol(question.name)}
+        pieces.append(
+            f"## {question.name}\n{writer.say('question', question.key, {**question.words, **own})}"
+        )
+    joints = [p if len(p) == 1 else p for p in linkage.points if p in linkage.pins]
+    pieces.append(
+        f"## figure\n{writer.say('statement', 'figure', {'points': ', '.join(joints), 'name': linkage.angle})}"
+    )
+    return "\n\n".join(pieces) + "\n"
+
+
+def _title(titles: Mapping[str, str], lang: str, name: str) -> str:
+    return titles.get(lang) or titles.get("") or name
+
+
+def _statement(writer: SentenceWriter) -> str:
+    formulas, linkage = writer.formulas, writer.linkage
+    say = writer.say
+    fixed = [
+        say(
+            "statement",
+            "frame_point",
+            {"B": p, **dict(zip(("x", "y"), writer.coordinates(place), strict=True))},
+        )
+        for p, place in linkage.ground.items()
+    ]
+    bodies = [say("statement", "frame", {"points": writer.listed(fixed)})]
+    bodies += [_body(writer, name) for name in formulas.order if name != GROUND]
+    bodies += [_slide(writer, slide) for slide in linkage.slides.values()]
+    for gear in linkage.gears:
+        inner = say("statement", "gear_inner") if gear.inner else ""
+        words = {"i": _number(gear.first), "j": _number(gear.second), "inner": inner}
+        words |= {"r": writer.latex(gear.radii[0]), "R": writer.latex(gear.radii[1])}
+        bodies.append(say("statement", "gear", words))
+    assembled = []
+    for point, entry in formulas.modes.items():
+        if not entry.is_drawn:
+            slide = linkage.slides.get(point)
+            guide = slide is not None and any(
+                isinstance(g, Dyad) and g.kind == "RPR" and g.inner == slide for g in formulas.groups
+            )
+            key = f"{entry.ways[0]}_guide" if guide else entry.ways[0]
+            if point in linkage.assembly or not guide:
+                assembled.append(say("statement", key, {"B": point, "P": entry.start, "Q": entry.end}))
+    if any(isinstance(g, LargeGroup) for g in formulas.groups):
+        assembled.append(say("statement", "near"))
+    directions = _directions(writer)
+    motion = []
+    if directions:
+        motion.append(say("statement", "directions", {"list": writer.listed(directions)}))
+    if linkage.speed:
+        words = {
+            "omega": formulas.symbol(linkage.speed),
+            "alpha": formulas.symbol(linkage.acceleration) if linkage.acceleration else "",
+        }
+        motion.append(say("statement", "varying" if linkage.acceleration else "constant", words))
+    for load in linkage.loads:
+        if load.moment is not None:
+            motion.append(
+                say("statement", "moment", {"value": _with_unit(writer, load.moment, "N*m"), "name": load.on})
+            )
+        elif load.force is not None:
+            words = {
+                "value": _with_unit(writer, load.force, "N"),
+                "B": load.on,
+                "angle": writer.degrees(load.angle),
+            }
+            motion.append(say("statement", "force", words))
+    if linkage.loads:
+        motion.append(say("statement", "forces"))
+    return "\n\n".join(" ".join(part) for part in (bodies, assembled, motion) if part)
+
+
+def _with_unit(writer: SentenceWriter, expression: Expression, unit: str) -> str:
+    if not expression.is_number:
+        return writer.latex(expression)
+    latex = {"N*m": r"\mathrm{N\,m}", "N": r"\mathrm{N}"}[unit]
+    return rf"{writer.latex(expression)}\ {latex}"
+
+
+def _number(body: str) -> str:
+    return "1" if body == GROUND else body
+
+
+def _body(writer: SentenceWriter, name: str) -> str:
+    formulas, linkage = writer.formulas, writer.linkage
+    points = linkage.bodies[name].points
+    start = next((p for p, place in points.items() if place.is_origin), linkage.bodies[name].at)
+    others = [p for p in points if p != start]
+    if not others:
+        return writer.say("statement", "block", {"B": start, "name": name})
+    words = {"P": start, "name": name, "angle": formulas.symbol(formulas.turns[name])}
+    far = points[others[0]]
+    if len(others) == 1 and far.radius is None and far.y.is_zero:
+        words |= {"B": others[0], "length": writer.latex(far.x)}
+        return writer.say("statement", "crank" if name == linkage.driver else "bar", words)
+    places = [
+        writer.say(
+            "statement",
+            "frame_point",
+            {"B": p, **dict(zip(("x", "y"), writer.coordinates(points[p]), strict=True))},
+        )
+        for p in others
+    ]
+    words |= {"points": "".join(map(point_latex, [start, *others])), "places": writer.listed(places)}
+    return writer.say("statement", "plate_driven" if name == linkage.driver else "plate", words)
+
+
+def _slide(writer: SentenceWriter, slide: SlideEntry) -> str:
+    if slide.through_name:
+        through = f"${point_latex(slide.through_name)}$"
+    else:
+        x, y = writer.coordinates(slide.through)
+        through = writer.say("statement", "through_place", {"x": x, "y": y})
+    words = {
+        "B": slide.at,
+        "name": slide.of,
+        "through": through,
+        "s": slide.distance,
+        "along": writer.degrees(slide.along),
+    }
+    if slide.on == GROUND:
+        return writer.say("statement", "slide_ground", words)
+    turned = (
+        ""
+        if slide.along.is_zero
+        else writer.say("statement", "slide_turned", {"along": writer.degrees(slide.along)})
+    )
+    return writer.say("statement", "slide_body", {**words, "guide": slide.on, "turned": turned})
+
+
+def _directions(writer: SentenceWriter) -> list[str]:
+    formulas, linkage = writer.formulas, writer.linkage
+    results = {}
+    for name in formulas.order:
+        turn = formulas.turns[name] if name != GROUND else ""
+        if not turn.startswith("theta") or turn in results:
+            continue
+        points = linkage.bodies[name].points
+        start = next((p for p, place in points.items() if place.is_origin), None)
+        ahead = [
+            p
+            for p, place in points.items()
+            if place.radius is None and place.y.is_zero and not place.is_origin
+        ]
+        words = {"symbol": formulas.symbol(turn), "name": name}
+        if start and ahead:
+            results[turn] = writer.say("statement", "direction", {**words, "P": start, "B": ahead[0]})
+        else:
+            results[turn] = writer.say("statement", "direction_axis", words)
+    return list(results.values())
+
+
+# --------------------------------------------------------------------------- solution
+
+
+def solution_text(formulas: FormulaWriter, questions: QuestionWriter, lang: str) -> str:
+    """Return the text of the solution as its author would have written it.
+
+    Parameters
+    ----------
+    formulas, questions
+        What the file states, compiled.
+    lang
+        Language.
+
+    Returns
+    -------
+    Markdown of named sections.
+    """
+    writer = SentenceWriter(formulas, lang)
+    groups = [_group(writer, group) for group in formulas.groups]
+    title = _title(formulas.linkage.title, lang, formulas.linkage.name)
+    pieces = [
+        f"# {writer.say('solution', 'title', {'title': title})}",
+        writer.say("solution", "opening", {"groups": writer.listed(groups)}) if groups else "",
+    ]
+    for quantity in formulas.quantities.values():
+        if quantity.step:
+            pieces.append(f"## {quantity.name}\n{_step(writer, quantity.step, quantity.words)}")
+    for mistake in questions.mistakes:
+        if all(t in formulas.quantities for t in mistake.targets):
+            pieces.append(f"## mistake {mistake.name}\n{writer.say('mistake', mistake.key, mistake.words)}")
+    return "\n\n".join(p for p in pieces if p) + "\n"
+
+
+def _step(writer: SentenceWriter, step: str, words: Mapping[str, str]) -> str:
+    """Return the sentence of a step: its own, else the one without what a moving guide adds; a second component is likewise."""
+    for key in (step, step.removesuffix("_moved")):
+        if writer.has("step", key):
+            return writer.say("step", key, words)
+    if step.endswith("_y") and writer.has("step", f"{step[:-2]}_x"):
+        return writer.say("step", "likewise", words)
+    raise KeyError(step)
+
+
+def _group(writer: SentenceWriter, group: Any) -> str:
+    if isinstance(group, Dyad):
+        return (
+            writer.say("solution", "dyad", {"kind": group.kind})
+            .replace("<p>", group.p)
+            .replace("<q>", group.q)
+        )
+    if isinstance(group, Wheel):
+        return writer.tables["solution"]["wheel"].replace("<body>", group.body)
+    return writer.say("solution", "large", {"bodies": ", ".join(group.bodies)})
