@@ -11,7 +11,7 @@ from functools import cached_property, lru_cache
 from pathlib import Path
 from types import ModuleType
 
-from coursework.errors import CourseworkError
+from coursework.errors import BadInput, CourseworkError
 from coursework.linkages.drawing import FigureWriter
 from coursework.linkages.expressions import Expression, ExpressionReader
 from coursework.linkages.formulas import FormulaWriter, Quantity, names_in, vector_code
@@ -26,6 +26,7 @@ from coursework.linkages.linkage_file import (
 )
 from coursework.linkages.questions import QuestionWriter
 from coursework.linkages.sentences import exercise_text, solution_text, spoken
+from coursework.linkages.vectors import PolygonWriter
 
 _IMPORTS = """\
 import numpy as np
@@ -38,11 +39,14 @@ from coursework.linkages.closure import Track, closure_gaps, turns_round
 from coursework.linkages.large import LargeGroup
 """
 _EXERCISE_IMPORTS = """\
-from coursework.figures import Figure, angle_mark, ground_pivot, line, link, pin, point, rail, slider, slot_link
+from coursework.figures import Figure, angle_mark, circle, ground_pivot, line, link, pin, point, rail, slider, slot_link
 from coursework.model import Driver, Exercise, Part, chosen, detectable, drawn, fixed
 """
-_SOLUTION_IMPORTS = """from coursework.mechanics import Body, Gear, Load, Mechanism, Slide
-from coursework.solution import mistake, stable
+_SOLUTION_IMPORTS = """from coursework.figures.polygons import (
+    Side, normal, polygon_of_accelerations, polygon_of_velocities, tangential, turning,
+)
+from coursework.mechanics import Body, Gear, Load, Mechanism, Slide
+from coursework.solution import mistake, stable, told_after
 """
 
 
@@ -155,6 +159,8 @@ class CompiledLinkage:
         for number, text in enumerate(self._required()):
             try:
                 found = reader.condition(text)
+            except BadInput:
+                raise
             except CourseworkError as fault:
                 raise linkage.refused(("given", "require"), fault.args[0]) from fault
             name = f"required_{number + 1}"
@@ -245,9 +251,19 @@ class CompiledLinkage:
             *(f"{n} = {code}" for n, code in formulas.constants.items()),
             *(q.source for q in quantities),
             *(m.source for m in questions.mistakes if all(t in formulas.quantities for t in m.targets)),
+            self._polygons(),
             self._residual(),
         ]
         return "\n\n\n".join(p for p in pieces if p)
+
+    def _polygons(self) -> str:
+        """Return the code of the polygons that are asked; nothing where none is."""
+        writer = PolygonWriter(self.formulas)
+        codes = [writer.code(kind) for kind in self.questions.polygons]
+        if not codes:
+            return ""
+        listed = ", ".join(codes)
+        return f"def polygons({', '.join(names_in(listed + ','))}):\n    return ({listed},)"
 
     def _residual(self) -> str:
         """Return the code of the residual: joints and their rates, from the frames of the bodies."""
@@ -382,8 +398,7 @@ class CompiledLinkage:
         -------
         The module, which is also in ``sys.modules``.
         """
-        with author_faults():
-            source = self.exercise if kind == "exercises" else self.solution
+        source = self.exercise if kind == "exercises" else self.solution
         file = f"{self.linkage.path}:{kind}"
         module = ModuleType(name)
         module.__file__ = file
@@ -421,7 +436,7 @@ def compiled(path: Path, shown: str = "") -> CompiledLinkage:
     """
     with author_faults():
         result = _compiled(path, shown or str(path), path.stat().st_mtime_ns)
-        result.questions  # noqa: B018  # what the file asks is read with it
+        result.exercise, result.solution  # noqa: B018  # what makes no sense in the file is found while they are written
         return result
 
 
@@ -476,7 +491,7 @@ def _given(entry: GivenEntry) -> str:
         b.code if b.is_number else f"lambda {', '.join(b.names)}: {b.code}" for b in (entry.low, entry.high)
     )
     more = ", nonzero=True" if entry.nonzero else ""
-    more += ", positive=True" if entry.positive else ""
+    more += f", positive={entry.positive}"
     return f"drawn({low}, {high}, step={entry.step}, unit={entry.unit!r}{more})"
 
 

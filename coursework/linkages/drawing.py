@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from cmath import phase
+from itertools import pairwise
 
 from coursework.linkages.formulas import FormulaWriter, middle_value
 from coursework.linkages.linkage_file import GROUND, SlideEntry
@@ -23,13 +24,16 @@ class FigureWriter:
         self.elements: list[str] = []
         self._guides = {s.on for s in self.linkage.slides.values()}
         self._blocks = {
-            s.of for s in self.linkage.slides.values() if len(self.linkage.bodies[s.of].points) == 1
+            s.of
+            for s in self.linkage.slides.values()
+            if len(self.linkage.bodies[s.of].points) == 1 and s.of not in self._guides
         }
         self._ground()
         for body in self.linkage.bodies:
             self._body(body)
         for slide in self.linkage.slides.values():
             self._slide(slide)
+        self._gears()
         self._joints()
         self._driver()
 
@@ -47,7 +51,7 @@ class FigureWriter:
     def _ground(self) -> None:
         """Draw the frame between two fixed pivots where its length is a quantity."""
         points = [p for p in self.linkage.ground if p in self.linkage.pins]
-        for start, end in zip(points, points[1:], strict=False):
+        for start, end in pairwise(points):
             first, second = self.linkage.ground[start], self.linkage.ground[end]
             if first.is_origin and second.radius is None and second.y.is_zero and second.x.is_name:
                 self._add(
@@ -58,12 +62,10 @@ class FigureWriter:
         points = [
             p for p in self.linkage.bodies[body].points if p in self.linkage.pins or self._is_end(p, body)
         ]
-        if body in self._blocks or len(points) < 2:
-            return
         if body in self._guides:
             self._guide(body, points)
-            return
-        self._plate(body, points)
+        elif body not in self._blocks and len(points) > 1:
+            self._plate(body, points)
 
     def _plate(self, body: str, points: list[str]) -> None:
         formulas = self.formulas
@@ -87,7 +89,7 @@ class FigureWriter:
         if flat < 0.02 * size**2:
             way = max((z - centre for z in places.values()), key=abs)
             ordered = sorted(points, key=lambda p: ((places[p] - centre) / way).real)
-            for start, end in zip(ordered, ordered[1:], strict=False):
+            for start, end in pairwise(ordered):
                 self._add(f"link({self._at(start)}, {self._at(end)})")
             return
         ordered = sorted(points, key=lambda p: phase(places[p] - centre))
@@ -104,36 +106,42 @@ class FigureWriter:
     def _guide(self, body: str, points: list[str]) -> None:
         """Draw a slotted body: its slot as far as the block and its own points go, and bars to points off it."""
         slide = next(s for s in self.linkage.slides.values() if s.on == body)
-        straight = slide.along.is_zero and slide.through.is_origin
-        on_line = [p for p in points if straight and self.formulas.local(p, body).y.vanishes]
         unit = f"polar(1, {(self.formulas.heading(body) + Heading.of(slide.along.code)).code})"
         start = self._through(slide)
-        reach = f"1.25 * max(abs({self._distance(slide)}), 1.0)"
-        more = [f"abs({self._at(p)} - {start})" for p in on_line if p != slide.through_name]
-        length = f"max({', '.join([reach, *more])})" if more else reach
+        if len(self.linkage.bodies[body].points) == 1:
+            reach = f"1.25 * {self._crank} * {unit}"
+            self._add(f"slot_link({start} - {reach}, {start} + {reach})")
+            return
+        straight = slide.along.is_zero and slide.through.is_origin
+        on_line = [p for p in points if straight and self.formulas.local(p, body).y.vanishes]
+        lengths = [f"1.25 * max(abs({self._at(slide.at)} - {start}), 1.0)"]
+        lengths += [f"abs({self._at(p)} - {start})" for p in on_line if p != slide.through_name]
+        length = f"max({', '.join(lengths)})" if len(lengths) > 1 else lengths[0]
         self._add(f"slot_link({start}, {start} + {unit} * {length})")
         off = [p for p in points if p not in on_line]
-        if off:
+        if off and len(points) > 1:
             self._plate(body, [*dict.fromkeys([on_line[0] if on_line else points[0], *off])])
+        if not on_line:
+            self._add(f"link({self._at(self.linkage.bodies[body].at)}, {start})")
+
+    @property
+    def _crank(self) -> str:
+        """Length of the driving body, as code."""
+        driver = self.linkage.bodies[self.linkage.driver]
+        end = next((p for p in driver.points if p != driver.at), driver.at)
+        return f"abs({self._at(end)} - {self._at(driver.at)})"
 
     def _through(self, slide: SlideEntry) -> str:
         if slide.through_name:
             return self._at(slide.through_name)
         return f"({self.formulas.world(slide.through, slide.on).complex})"
 
-    def _distance(self, slide: SlideEntry) -> str:
-        """Return the distance along a slide in hidden points, as code."""
-        return f"{self._at(slide.at)} - {self._through(slide)}"
-
     def _slide(self, slide: SlideEntry) -> None:
         heading = self.formulas.heading(slide.on) + Heading.of(slide.along.code)
         place = self._at(slide.at)
-        driver = self.linkage.bodies[self.linkage.driver]
-        end = next((p for p in driver.points if p != driver.at), driver.at)
-        half = f"0.6 * abs({self._at(end)} - {self._at(driver.at)})"
-        unit = f"polar(1, {heading.code})"
         if slide.on == GROUND:
-            self._add(f"rail({place} - {half} * {unit}, {place} + {half} * {unit})")
+            half = f"0.6 * {self._crank} * polar(1, {heading.code})"
+            self._add(f"rail({place} - {half}, {place} + {half})")
         self._add(f"slider({place}, {heading.code})")
 
     def _joints(self) -> None:
@@ -147,12 +155,17 @@ class FigureWriter:
             ):
                 self._add(f'point({self._at(point)}, "{_label(point)}")')
 
+    def _gears(self) -> None:
+        """Draw the pitch circles."""
+        for gear in self.linkage.gears:
+            for body, radius in zip((gear.first, gear.second), gear.radii, strict=True):
+                shared = [p for p, b in self.linkage.pins.items() if body in b and gear.carrier in b]
+                if shared:
+                    self._add(f"circle({self._at(shared[0])}, {radius.code}, dashed=True)")
+
     def _driver(self) -> None:
-        driver = self.linkage.bodies[self.linkage.driver]
-        end = next((p for p in driver.points if p != driver.at), driver.at)
-        start = self._at(driver.at)
-        angle = self.linkage.angle
-        self._add(f"line({start}, {start} + 0.6 * abs({self._at(end)} - {start}), dashed=True)")
+        start, angle = self._at(self.linkage.bodies[self.linkage.driver].at), self.linkage.angle
+        self._add(f"line({start}, {start} + 0.6 * {self._crank}, dashed=True)")
         self._add(f'angle_mark({start}, 0, {angle}, r"{self.formulas.symbol(angle)}")')
 
 

@@ -32,7 +32,7 @@ Chain: TypeAlias = list[tuple[str, str, str, str]]  #: vectors as code: length, 
 
 FUNCTIONS = frozenset(
     "sin cos tan sqrt abs atan2 acos asin polar angle wrap np dyads dict "
-    "Figure line link ground_pivot pin point slot_link slider rail wheel angle_mark max".split()
+    "Figure line link ground_pivot pin point slot_link slider rail circle angle_mark max complex Side normal tangential turning polygon_of_velocities polygon_of_accelerations".split()
 )
 _MODES = {"left": "right", "right": "left", "ahead": "behind", "behind": "ahead"}
 
@@ -60,9 +60,16 @@ class Quantity:
         return names_in(self.code)
 
     @property
+    def _first_component(self) -> str:
+        """Name of the component along x of which this is the one along y."""
+        return f"x{self.name[1:]}" if self.name.startswith("y") else f"{self.name[:-1]}x"
+
+    @property
     def source(self) -> str:
         """The function as Python code."""
         lines = []
+        if self.step.endswith("_y"):
+            lines.append(f'@told_after("{self._first_component}")')
         if self.stable:
             lines.append(f"@stable(lambda {', '.join(names_in(self.stable))}: {self.stable})")
         body = (
@@ -150,6 +157,8 @@ class FormulaWriter:
         self._place_driver()
         for group in self.groups:
             self._place(group)
+        for point in linkage.points:  # a length that places one is a quantity, whatever is asked
+            self.at(point)
 
     # --------------------------------------------------------------------- turns
 
@@ -437,7 +446,9 @@ class FormulaWriter:
 
     def _rrr(self, group: Dyad) -> None:
         P, B, Q = group.outer_p, group.inner, group.outer_q
-        assert isinstance(P, str) and isinstance(B, str) and isinstance(Q, str)
+        assert isinstance(P, str)
+        assert isinstance(B, str)
+        assert isinstance(Q, str)
         p, q = group.p, group.q
         to_p, to_q = self.arm(p, P, B), self.arm(q, Q, B)
         words = {"P": P, "B": B, "Q": Q, "p": p, "q": q}
@@ -564,7 +575,9 @@ class FormulaWriter:
 
     def _rrp(self, group: Dyad) -> None:
         P, B, slide = group.outer_p, group.inner, group.outer_q
-        assert isinstance(P, str) and isinstance(B, str) and isinstance(slide, SlideEntry)
+        assert isinstance(P, str)
+        assert isinstance(B, str)
+        assert isinstance(slide, SlideEntry)
         p, q = group.p, group.q
         arm = self.arm(p, P, B)
         placed, base, sign, heading = self._track(slide, q, B)
@@ -700,7 +713,9 @@ class FormulaWriter:
 
     def _rpr(self, group: Dyad) -> None:
         P, slide, Q = group.outer_p, group.inner, group.outer_q
-        assert isinstance(P, str) and isinstance(slide, SlideEntry) and isinstance(Q, str)
+        assert isinstance(P, str)
+        assert isinstance(slide, SlideEntry)
+        assert isinstance(Q, str)
         p, q = group.p, group.q
         direction = Heading.of(slide.along.code)
         constant = _local(slide.through) - self.local(Q, q) + self.local(P, p) - self.local(slide.at, p)
@@ -767,18 +782,21 @@ class FormulaWriter:
 
     def _two_slides(self, group: Dyad) -> None:
         """Write a point that is on two lines: the pin of two blocks, or a placed pin that two slides reach."""
-        first: tuple[str, int, Heading, str, Plane]
         if group.kind == "PRP":
             B = group.inner
             one, other = group.outer_p, group.outer_q
-            assert isinstance(B, str) and isinstance(one, SlideEntry) and isinstance(other, SlideEntry)
+            assert isinstance(B, str)
+            assert isinstance(one, SlideEntry)
+            assert isinstance(other, SlideEntry)
             guide_1, base_1, sign_1, way_1 = self._track(one, group.p, B)
             guide_2, base_2, sign_2, way_2 = self._track(other, group.q, B)
             gap = base_2 - base_1
             name = B
         else:
             P, inner, outer = group.outer_p, group.inner, group.outer_q
-            assert isinstance(P, str) and isinstance(inner, SlideEntry) and isinstance(outer, SlideEntry)
+            assert isinstance(P, str)
+            assert isinstance(inner, SlideEntry)
+            assert isinstance(outer, SlideEntry)
             p, q = group.p, group.q
             frame = self.heading(outer.on if outer.of == q else outer.of)
             if inner.of == p:
@@ -1132,10 +1150,12 @@ class FormulaWriter:
 
     @property
     def geometry(self) -> tuple[str, ...]:
-        """Given quantities that place points and slides."""
+        """Given quantities that place the joints."""
         linkage = self.linkage
-        names = [n for p in linkage.ground.values() for n in p.names]
-        names += [n for b in linkage.bodies.values() for p in b.points.values() for n in p.names]
+        joints = {*linkage.pins, *linkage.slides, *(s.through_name for s in linkage.slides.values())}
+        names = [n for p, place in linkage.ground.items() if p in joints for n in place.names]
+        for body in linkage.bodies.values():
+            names += [n for p, place in body.points.items() if p in joints for n in place.names]
         for slide in linkage.slides.values():
             names += [*slide.through.names, *slide.along.names]
         for gear in linkage.gears:

@@ -136,7 +136,6 @@ class LinkageFile:
     title: Mapping[str, str]
     version: int
     given: Mapping[str, GivenEntry]
-    require: tuple[Expression, ...]
     ground: Mapping[str, Place]
     bodies: Mapping[str, BodyEntry]
     slides: Mapping[str, SlideEntry]
@@ -225,12 +224,15 @@ class _LinkageReader(TomlReader):
         super().__init__(path, source)
         self.table = table
         self.units: dict[str, str] = {}
+        self.constants: dict[
+            str, GivenEntry
+        ] = {}  #: numbers that stand in places and loads, by the names that they get
 
     def linkage(self) -> LinkageFile:
         self.only(self.table, KEYS)
         title = self._title()
         given = self._given()
-        ground = self._places(("ground",), both=True)
+        ground = self._places(("ground",))
         if not ground:
             raise self.refused(("ground",), 'the ground has points: [ground], then O = ["0 mm", "0 mm"]')
         bodies = self._bodies(ground)
@@ -238,14 +240,22 @@ class _LinkageReader(TomlReader):
         driver, angle = self._driver(bodies, given)
         speed, acceleration = (f"{stem}{angle.removeprefix('theta')}" for stem in ("omega", "alpha"))
         assembly, near = self._assembly()
+        gears, loads = self._gears(bodies), self._loads(bodies)
         linkage = LinkageFile(
-            self.path, self.source, title, self._whole("version", 1), given, (), ground, bodies, slides,
-            self._gears(bodies), assembly, near, self._ask(), self._loads(bodies), driver, angle,
+            self.path, self.source, title, self._whole("version", 1), self._ordered(given, angle), ground, bodies, slides,
+            gears, assembly, near, self._ask(), loads, driver, angle,
             speed if speed in given else "", acceleration if acceleration in given else "", self.path.stem,
         )  # fmt: skip
         for fault in self._faults(linkage):
             raise fault
         return linkage
+
+    def _ordered(self, given: Mapping[str, GivenEntry], angle: str) -> Mapping[str, GivenEntry]:
+        """Return all given quantities as the sheet lists them: what places the joints, the driver, what acts on it."""
+        driver = {angle.replace("theta", stem, 1) for stem in ("theta", "omega", "alpha")}
+        first = {**given, **self.constants}
+        ranks = {n: 2 if e.unit in ("N", "N*m") else int(n in driver) for n, e in first.items()}
+        return dict(sorted(first.items(), key=lambda item: ranks[item[0]]))
 
     # -------------------------------------------------------------------- pieces
 
@@ -284,8 +294,21 @@ class _LinkageReader(TomlReader):
         except CourseworkError as fault:
             raise self.refused(at, fault.args[0] if fault.args else str(fault)) from fault
 
-    def _expression(self, at: Sequence[str | int], text: object, unit: str) -> Expression:
-        return self._checked(at, ExpressionReader(self.units).read, text, unit)
+    def _expression(self, at: Sequence[str | int], text: object, unit: str, name: str = "") -> Expression:
+        """Read an expression; a number other than 0 becomes a given quantity of that name, which the sheet lists among its data."""
+        found: Expression = self._checked(at, ExpressionReader(self.units).read, text, unit)
+        if (
+            not name
+            or not found.is_number
+            or found.is_zero
+            or (unit == "deg" and float(found.code) % 90 == 0)
+        ):
+            return found
+        while name in self.units:
+            name += "_"
+        self.units[name] = unit
+        self.constants[name] = GivenEntry(unit, value=float(found.code))
+        return Expression(name, (name,))
 
     # --------------------------------------------------------------------- given
 
@@ -341,7 +364,7 @@ class _LinkageReader(TomlReader):
 
     # -------------------------------------------------------------------- points
 
-    def _places(self, at: tuple[str, ...], *, both: bool) -> dict[str, Place]:
+    def _places(self, at: tuple[str, ...]) -> dict[str, Place]:
         table = self._table(*at)
         results = {}
         for name, value in table.items():
@@ -349,19 +372,24 @@ class _LinkageReader(TomlReader):
                 raise self.refused(
                     (*at, name), f"a point is called by a capital letter, such as A or O2; found {name!r}"
                 )
-            results[name] = self._place((*at, name), value)
+            results[name] = self._place(
+                (*at, name), value, (f"x{name}", f"x{name}", f"y{name}", f"gamma_{name}")
+            )
         return results
 
-    def _place(self, at: Sequence[str | int], value: Any) -> Place:
+    def _place(self, at: Sequence[str | int], value: Any, names: tuple[str, str, str, str]) -> Place:
+        """Read a place; ``names`` of its constants: on the axis, x, y, the direction."""
         if isinstance(value, str):
-            return Place(self._expression(at, value, "mm"))
+            return Place(self._expression(at, value, "mm", names[0]))
         if isinstance(value, list) and len(value) == 2:
-            x, y = (self._expression(at, each, "mm") for each in value)
+            x, y = (
+                self._expression(at, each, "mm", name) for each, name in zip(value, names[1:3], strict=True)
+            )
             return Place(x, y)
         if isinstance(value, Mapping) and set(value) == {"r", "angle"}:
             return Place(
-                radius=self._expression(at, value["r"], "mm"),
-                angle=self._expression(at, value["angle"], "deg"),
+                radius=self._expression(at, value["r"], "mm", names[0]),
+                angle=self._expression(at, value["angle"], "deg", names[3]),
             )
         raise self.refused(
             at, f'a place is "r2", ["x", "y"] or {{ r = "r5", angle = "beta" }}; found {value!r}'
@@ -410,6 +438,10 @@ class _LinkageReader(TomlReader):
         points = value.get("points", {})
         if not isinstance(points, Mapping):
             raise self.refused(("bodies", name), f'points = {{ A = "0 mm", B = "r3" }}; found {points!r}')
+        origin = str(
+            value.get("at")
+            or next((p for p, place in points.items() if re.match(r"\s*0\b(?!\.)", str(place))), "")
+        )
         results = {}
         for point, place in points.items():
             if not _POINT.match(point):
@@ -417,7 +449,8 @@ class _LinkageReader(TomlReader):
                     ("bodies", name),
                     f"a point is called by a capital letter, such as A or O2; found {point!r}",
                 )
-            results[point] = self._place(("bodies", name), place)
+            own = (f"{origin}{point}", f"x_{point}_{name}", f"y_{point}_{name}", f"gamma_{point}")
+            results[point] = self._place(("bodies", name), place, own)
         return results
 
     def _driver(self, bodies: Mapping[str, BodyEntry], given: Mapping[str, GivenEntry]) -> tuple[str, str]:
@@ -473,7 +506,7 @@ class _LinkageReader(TomlReader):
                 raise self.refused(
                     at, f"distance names the distance along the slide, which follows; found {distance!r}"
                 )
-            along = self._expression(at, value.get("along", "0 deg"), "deg")
+            along = self._expression(at, value.get("along", "0 deg"), "deg", f"delta_{point}")
             results[point] = SlideEntry(point, of, on, through, name, along, distance)
         return results
 
@@ -491,7 +524,7 @@ class _LinkageReader(TomlReader):
             if value not in points:
                 raise self.refused(at, f"body {on} has no point {value!r}{nearest(value, points)}")
             return points[value], value
-        return self._place(at, value), ""
+        return self._place(at, value, (f"a_{at[-1]}", f"a_{at[-1]}", f"e_{at[-1]}", f"gamma_{at[-1]}")), ""
 
     def _gears(self, bodies: Mapping[str, BodyEntry]) -> tuple[GearEntry, ...]:
         results = []
@@ -512,7 +545,10 @@ class _LinkageReader(TomlReader):
             for body in pair:
                 if body not in names:
                     raise self.refused(at, f"no body {body!r}{nearest(body, names)}")
-            first, second = (self._expression(at, r, "mm") for r in value["radii"])
+            first, second = (
+                self._expression(at, r, "mm", f"R{body}")
+                for r, body in zip(value["radii"], pair, strict=False)
+            )
             results.append(GearEntry(*pair, (first, second), bool(value.get("inner", False))))
         return tuple(results)
 
@@ -610,9 +646,9 @@ class _LinkageReader(TomlReader):
             results.append(
                 LoadEntry(
                     on,
-                    self._expression(at, load["moment"], "N*m") if "moment" in load else None,
-                    self._expression(at, load["force"], "N") if "force" in load else None,
-                    self._expression(at, load.get("angle", "0 deg"), "deg"),
+                    self._expression(at, load["moment"], "N*m", f"M{on}") if "moment" in load else None,
+                    self._expression(at, load["force"], "N", f"F{on}") if "force" in load else None,
+                    self._expression(at, load.get("angle", "0 deg"), "deg", f"delta_F{on}"),
                 )
             )
         return tuple(results)
@@ -621,19 +657,25 @@ class _LinkageReader(TomlReader):
 
     def _faults(self, linkage: LinkageFile) -> Iterator[BadInput]:
         """Yield what bodies and joints do not make: what holds each body, and how many ways all of them move."""
-        slid = {body for s in linkage.slides.values() for body in (s.of, s.on)}
         geared = {body for g in linkage.gears for body in (g.first, g.second)}
-        for name, body in linkage.bodies.items():
-            shared = [p for p in body.points if p in linkage.pins]
-            if not shared and name not in slid:
+        hold = {
+            name: [
+                *(p for p in body.points if p in linkage.pins),
+                *(s.at for s in linkage.slides.values() if name in (s.of, s.on)),
+            ]
+            for name, body in linkage.bodies.items()
+        }
+        for name in (n for n, joints in hold.items() if not joints):
+            points = ", ".join(linkage.bodies[name].points)
+            yield self.refused(
+                ("bodies", name),
+                f"body {name} is in the air: it shares none of its points {points} with another body, and does not slide",
+            )
+        for name, joints in hold.items():
+            if len(joints) < 2 and name != linkage.driver and name not in geared:
                 yield self.refused(
                     ("bodies", name),
-                    f"body {name} is in the air: it shares none of its points {', '.join(body.points)} with another body, and does not slide",
-                )
-            elif len(shared) + (name in slid) < 2 and name != linkage.driver and name not in geared:
-                yield self.refused(
-                    ("bodies", name),
-                    f"body {name} hangs on {shared[0] if shared else 'its slide'} alone; a second point that it shares, or a slide, holds it",
+                    f"body {name} hangs on {joints[0]} alone; a second point that it shares, or a slide, holds it",
                 )
         crank = linkage.bodies[linkage.driver]
         if crank.at not in linkage.ground:

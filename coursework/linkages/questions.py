@@ -238,12 +238,13 @@ class QuestionWriter:
         return tuple(s.distance for s in self.linkage.slides.values())
 
     def _turn_words(self, turn: str) -> dict[str, str]:
-        body = next(b for b, t in self.formulas.turns.items() if t == turn)
+        turned = [b for b, t in self.formulas.turns.items() if t == turn]
+        body = next((b for b in turned if turn in (f"theta{b}", f"theta_{b}")), turned[0])
         return {"body": body, "symbol": self.formulas.symbol(turn)}
 
     def _slide_words(self, distance: str) -> dict[str, str]:
         slide = next(s for s in self.linkage.slides.values() if s.distance == distance)
-        return {"B": slide.at, "of": slide.of, "on": slide.on}
+        return {"B": slide.at, "s": distance}
 
     def _known(self, name: str, at: tuple[str, str]) -> None:
         if name[0] in "xy" and name[1:] in self._moving_points:

@@ -88,18 +88,19 @@ class SentenceWriter:
         if name == GROUND:
             return self.tables["body"]["frame"]
         points = [*self.linkage.bodies[name].points]
-        joints = [p for p in points if p in self.linkage.pins] or points
-        kind = (
-            "crank"
-            if name == self.linkage.driver and len(points) == 2
-            else ("block", "bar")[len(points) == 2]
-            if len(points) < 3
-            else "plate"
-        )
         if any(name in (g.first, g.second) for g in self.linkage.gears) and len(points) == 1:
             kind = "wheel"
-        listed = "".join(map(point_latex, points if kind != "block" else joints[:1]))
-        return self.tables["body"][kind].replace("<points>", listed)
+        elif len(points) == 1:
+            kind = "guide" if self.is_guide(name) else "block"
+        elif len(points) == 2:
+            kind = "crank" if name == self.linkage.driver else "bar"
+        else:
+            kind = "plate"
+        return self.tables["body"][kind].replace("<points>", "".join(map(point_latex, points)))
+
+    def is_guide(self, name: str) -> bool:
+        """Return whether another body slides on a body."""
+        return any(s.on == name for s in self.linkage.slides.values())
 
     def latex(self, expression: Expression) -> str:
         """Return an expression in LaTeX; a number alone as it is printed."""
@@ -117,17 +118,6 @@ class SentenceWriter:
         """Return a direction in LaTeX."""
         return rf"{self.latex(expression)}^{{\circ}}" if expression.is_number else self.latex(expression)
 
-    def coordinates(self, place: Place) -> tuple[str, str]:
-        """Return both coordinates of a place in LaTeX."""
-        if place.radius is None:
-            return self.latex(place.x), self.latex(place.y)
-        radius, angle = place.radius.code, place.angle.code
-        names = place.names
-        return tuple(  # type: ignore[return-value]  # of two
-            self.latex(Expression(f"{_factor(radius)} * {function}({angle})", names))
-            for function in ("cos", "sin")
-        )
-
     def listed(self, texts: Sequence[str]) -> str:
         """Return texts as a list with an *and*."""
         if len(texts) < 2:
@@ -140,8 +130,14 @@ def point_latex(point: str) -> str:
     return point if len(point) == 1 else f"{point[0]}_{{{point[1:]}}}"
 
 
-def _factor(code: str) -> str:
-    return code if re.fullmatch(r"[\w.]+", code) else f"({code})"
+def _frame_point(writer: SentenceWriter, point: str, place: Place) -> str:
+    """Return a point with its place in a frame."""
+    if place.radius is not None:
+        words = {"B": point, "r": writer.latex(place.radius), "angle": writer.degrees(place.angle)}
+        return writer.say("statement", "frame_point_polar", words)
+    return writer.say(
+        "statement", "frame_point", {"B": point, "x": writer.latex(place.x), "y": writer.latex(place.y)}
+    )
 
 
 # -------------------------------------------------------------------------- statement
@@ -174,7 +170,7 @@ def exercise_text(formulas: FormulaWriter, questions: QuestionWriter, lang: str)
         pieces.append(
             f"## {question.name}\n{writer.say('question', question.key, {**question.words, **own})}"
         )
-    joints = [p if len(p) == 1 else p for p in linkage.points if p in linkage.pins]
+    joints = [p for p in linkage.points if p in linkage.pins]
     pieces.append(
         f"## figure\n{writer.say('statement', 'figure', {'points': ', '.join(joints), 'name': linkage.angle})}"
     )
@@ -188,22 +184,15 @@ def _title(titles: Mapping[str, str], lang: str, name: str) -> str:
 def _statement(writer: SentenceWriter) -> str:
     formulas, linkage = writer.formulas, writer.linkage
     say = writer.say
-    fixed = [
-        say(
-            "statement",
-            "frame_point",
-            {"B": p, **dict(zip(("x", "y"), writer.coordinates(place), strict=True))},
-        )
-        for p, place in linkage.ground.items()
-    ]
+    fixed = [_frame_point(writer, p, place) for p, place in linkage.ground.items()]
     bodies = [say("statement", "frame", {"points": writer.listed(fixed)})]
     bodies += [_body(writer, name) for name in formulas.order if name != GROUND]
-    bodies += [_slide(writer, slide) for slide in linkage.slides.values()]
+    joints = [_slide(writer, slide) for slide in linkage.slides.values()]
     for gear in linkage.gears:
         inner = say("statement", "gear_inner") if gear.inner else ""
         words = {"i": _number(gear.first), "j": _number(gear.second), "inner": inner}
         words |= {"r": writer.latex(gear.radii[0]), "R": writer.latex(gear.radii[1])}
-        bodies.append(say("statement", "gear", words))
+        joints.append(say("statement", "gear", words))
     assembled = []
     for point, entry in formulas.modes.items():
         if not entry.is_drawn:
@@ -240,7 +229,7 @@ def _statement(writer: SentenceWriter) -> str:
             motion.append(say("statement", "force", words))
     if linkage.loads:
         motion.append(say("statement", "forces"))
-    return "\n\n".join(" ".join(part) for part in (bodies, assembled, motion) if part)
+    return "\n\n".join(" ".join(part) for part in (bodies, joints, assembled, motion) if part)
 
 
 def _with_unit(writer: SentenceWriter, expression: Expression, unit: str) -> str:
@@ -260,20 +249,14 @@ def _body(writer: SentenceWriter, name: str) -> str:
     start = next((p for p, place in points.items() if place.is_origin), linkage.bodies[name].at)
     others = [p for p in points if p != start]
     if not others:
-        return writer.say("statement", "block", {"B": start, "name": name})
+        kind = "guide" if writer.is_guide(name) else "block"
+        return writer.say("statement", kind, {"B": start, "name": name})
     words = {"P": start, "name": name, "angle": formulas.symbol(formulas.turns[name])}
     far = points[others[0]]
     if len(others) == 1 and far.radius is None and far.y.is_zero:
         words |= {"B": others[0], "length": writer.latex(far.x)}
         return writer.say("statement", "crank" if name == linkage.driver else "bar", words)
-    places = [
-        writer.say(
-            "statement",
-            "frame_point",
-            {"B": p, **dict(zip(("x", "y"), writer.coordinates(points[p]), strict=True))},
-        )
-        for p in others
-    ]
+    places = [_frame_point(writer, p, points[p]) for p in others]
     words |= {"points": "".join(map(point_latex, [start, *others])), "places": writer.listed(places)}
     return writer.say("statement", "plate_driven" if name == linkage.driver else "plate", words)
 
@@ -282,8 +265,8 @@ def _slide(writer: SentenceWriter, slide: SlideEntry) -> str:
     if slide.through_name:
         through = f"${point_latex(slide.through_name)}$"
     else:
-        x, y = writer.coordinates(slide.through)
-        through = writer.say("statement", "through_place", {"x": x, "y": y})
+        words = {"x": writer.latex(slide.through.x), "y": writer.latex(slide.through.y)}
+        through = writer.say("statement", "through_place", words)
     words = {
         "B": slide.at,
         "name": slide.of,

@@ -1,0 +1,121 @@
+"""A mechanism's file that makes no sense ends in one line: file, line, what was found, what would do."""
+
+import shutil
+
+import pytest
+from linkage_samples import FOLDER
+from tables import each_row
+
+from coursework import open_course
+from coursework.errors import BadCourse
+from coursework.linkages.compiled import compiled
+
+TOGGLE = (FOLDER / "exercises" / "toggle.toml").read_text("utf-8")
+
+#: What is changed in a right file: the text, what replaces it, the line that is named, a piece of the message.
+FAULTS = [
+    ('title = { fr = "Genouillère", en = "Toggle" }', "title = 3", 1, "title = {"),
+    ("[ground]", "[grund]", 12, "did you mean 'ground'"),
+    ('r1 = "180 mm"', "r1 = 180", 4, '"180 mm"'),
+    ('r4 = "150 mm"', 'r4 = "150"', 7, "needs a unit"),
+    ('r4 = "150 mm"', 'r4 = "150 N"', 19, "is in N"),
+    ('omega2 = "12 rad/s"', 'omega2 = "12 rad/parsec"', 9, "parsec"),
+    ('from = "40 mm", to = "70 mm"', 'from = "70 mm", to = "40 mm"', 5, "smaller value"),
+    ('to = "70 mm", step = "5 mm"', 'to = "70 mm", step = "0 mm"', 5, "above 0"),
+    ('to = "70 mm", step', 'to = "70 mm", stp', 5, "did you mean 'step'"),
+    ('omega2 = "12 rad/s"', 'w = "12 rad/s"', 27, "omega2 ="),
+    ('"r2 < r4"', '"r2 < theta2"', 10, "compares mm with deg"),
+    ('"r2 < r4"', '"r2 < r9"', 10, "no quantity 'r9'"),
+    ('"is_crank(2)"', '"is_crank(4)"', 10, "is_crank(2)"),
+    ("transmission_angle(B)", "transmission_angle(A)", 10, "inner joint: B"),
+    ('C = ["r1", "0 mm"]', 'c = ["r1", "0 mm"]', 14, "capital letter"),
+    (
+        'at = "O", angle = "theta2"',
+        'at = "O", angle = "theta2 + 10 deg"',
+        17,
+        "given quantity such as theta2",
+    ),
+    ('at = "O", angle = "theta2", ', 'at = "O", ', 16, "nothing drives"),
+    ('4 = { at = "C", ', '4 = { at = "C", angle = "theta2", ', 19, "two bodies are driven, 2 and 4"),
+    (
+        '4 = { at = "C", points = { B = "r4" } }',
+        '4 = { points = { D = "0 mm", E = "r4" } }',
+        19,
+        "in the air",
+    ),
+    (
+        '4 = { at = "C", points = { B = "r4" } }',
+        '4 = { points = { D = "0 mm", B = "r4" } }',
+        19,
+        "hangs on B alone",
+    ),
+    ('3 = { points = { A = "0 mm", B = "r3" } }', "", 19, "hangs on C alone"),
+    (
+        '4 = { at = "C", points = { B = "r4" } }',
+        '4 = { at = "C", points = { B = "r4", E = "r3" } }\n5 = { at = "O", points = { B = "r1", E = "r2" } }',
+        16,
+        "degrees of freedom",
+    ),
+    (
+        '3 = { points = { A = "0 mm", B = "r3" } }',
+        '3 = { points = { A = "0 mm", B = "r3" }, mass = "3 kg" }',
+        18,
+        "no key 'mass'",
+    ),
+    (
+        '3 = { points = { A = "0 mm", B = "r3" } }',
+        '3 = { points = { A = "r2", B = "r3" } }',
+        18,
+        "where its frame begins",
+    ),
+    ('B = "left of A -> C"', "", 21, 'B = "left of A -> C"'),
+    ('B = "left of A -> C"', 'B = "above A"', 22, '"left of A -> C"'),
+    ('B = "left of A -> C"', 'B = "left of A -> O"', 22, "A -> C"),
+    ('B = "left of A -> C"', 'B = "ahead of A"', 22, "left or right"),
+    ('B = "left of A -> C"', 'B = "left of A -> C"\nK = "left of A -> C"', 23, "no point 'K'"),
+    ('["theta3", "theta4", "B"]', '["theta3", "theta9", "B"]', 26, "no quantity 'theta9'"),
+    ('["theta3", "theta4", "B"]', '["theta3", "theta3"]', 24, "asked twice"),
+    ('["I13", "I24"]', '["I13", "I77"]', 30, "instant centre"),
+    ("mobility = true", "mobilty = true", 25, "did you mean 'mobility'"),
+    ('{ on = "4", moment', '{ on = "Q", moment', 32, "a moment acts on a body"),
+    ("advantage = true", 'advantage = "2"', 31, "turns: 3, 4"),
+    ('polygon = ["velocity"', 'polygon = ["jerk"', 29, "'jerk'"),
+    ("advantage = true", "advantage = true\npoints = { theta7 = 3 }", 32, "no question 'theta7'"),
+]
+
+
+@each_row("text, other, line, piece", FAULTS)
+def test_a_fault_is_told_in_one_line_with_its_place(text, other, line, piece, tmp_path_factory):
+    assert TOGGLE.count(text) == 1
+    path = tmp_path_factory.mktemp("faults") / "toggle.toml"
+    path.write_text(TOGGLE.replace(text, other), "utf-8")
+    with pytest.raises(BadCourse) as caught:
+        made = compiled(path, "exercises/toggle.toml")
+        assert made.exercise
+        assert made.solution
+    told = str(caught.value)
+    assert "\n" not in told
+    assert told.startswith(f"exercises/toggle.toml, line {line}: "), told
+    assert piece in told, told
+
+
+def test_an_assembly_that_exists_for_no_draw_says_which_constraint_refuses(tmp_path):
+    from coursework.errors import Starved
+
+    folder = tmp_path / "course"
+    (folder / "exercises").mkdir(parents=True)
+    text = TOGGLE.replace('r4 = "150 mm"', 'r4 = "2 mm"').replace(
+        'require = ["r2 < r4", "is_crank(2)", "transmission_angle(B) > 25 deg"]', ""
+    )
+    (folder / "exercises" / "toggle.toml").write_text(text, "utf-8")
+    with pytest.raises(Starved, match="the_mechanism_closes"):
+        open_course(folder)["toggle"].variant(0)
+
+
+def test_a_changed_file_is_compiled_anew(tmp_path):
+    folder = tmp_path / "course"
+    shutil.copytree(FOLDER, folder)
+    path = folder / "exercises" / "toggle.toml"
+    before = compiled(path).linkage.given["r1"].value
+    path.write_text(TOGGLE.replace('r1 = "180 mm"', 'r1 = "190 mm"'), "utf-8")
+    assert (before, compiled(path).linkage.given["r1"].value) == (180.0, 190.0)

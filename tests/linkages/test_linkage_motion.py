@@ -1,0 +1,164 @@
+"""Mechanisms stated as files move as their joints say: against differences, virtual work, and the hand-written solutions."""
+
+import numpy as np
+import pytest
+from linkage_samples import NAMES, course
+from tables import each_row
+
+from coursework import open_course
+
+
+def _turns(exercise, given):
+    """Angles, distances and coordinates that follow from the driver's angle."""
+    names = exercise.solution.graph.names
+    return sorted(
+        n
+        for n in names
+        if (n.startswith("theta") or n in _distances(exercise) or (n[0] in "xy" and n[1:2].isupper()))
+        and n not in given
+    )
+
+
+def _distances(exercise):
+    return {n.removesuffix("_dot") for n in exercise.solution.graph.names if n.endswith("_dot")}
+
+
+def _rate(name, order):
+    if name.startswith("theta"):
+        return name.replace("theta", ("omega", "alpha")[order - 1], 1)
+    if name[0] in "xy" and name[1:2].isupper():
+        return f"{'va'[order - 1]}_{name[1:]}_{name[0]}"
+    return name + ("_dot", "_ddot")[order - 1]
+
+
+@each_row("name", NAMES)
+def test_rates_and_accelerations_are_the_differences_of_positions(name):
+    """Of seven points of a polynomial through positions a third of a degree apart, with the driver at a constant rate."""
+    exercise = course()[name]
+    given = dict(exercise.variant(3).given)
+    speed = given["omega2"]
+    given |= {n: 0.0 for n in ("alpha2",) if n in given}
+    step = 1 / 3
+    moved = {**given, "theta2": given["theta2"] + step * np.arange(-3, 4)}
+    positions = _turns(exercise, given)
+    names = exercise.solution.graph.names
+    found = exercise.solve(only=positions, **moved)
+    wanted = [_rate(n, order) for n in positions for order in (1, 2)]
+    rates = exercise.solve(only=[n for n in wanted if n in names], **given)
+    first = np.array([-1, 9, -45, 0, 45, -9, 1]) / 60
+    second = np.array([2, -27, 270, -490, 270, -27, 2]) / 180
+    unit = np.degrees(speed) / step  # one step, in steps a second
+    checked = 0
+    for item in positions:
+        along = np.asarray(found[item], dtype=float) * np.ones(7)
+        if item.startswith("theta"):
+            along = np.unwrap(along, period=360)
+        scale = 180 / np.pi if item.startswith("theta") else 1.0
+        size = max(np.ptp(along) / scale * unit, 1.0)
+        for order, weights in ((1, first), (2, second)):
+            rate = _rate(item, order)
+            if rate in rates:
+                expected = along @ weights * unit**order / scale
+                tolerance = 1e-7 * max(abs(expected), size * unit ** (order - 1))
+                assert rates[rate] == pytest.approx(expected, abs=tolerance), rate
+                checked += 1
+    assert checked >= 2
+
+
+@each_row("name", [n for n in NAMES if n in ("toggle", "offset_slider", "atkinson_engine")])
+def test_torques_do_the_work_of_the_load(name):
+    """A small turn of the driver: its torque times the angle, and the load times the way of its point or body, add up to nothing."""
+    exercise = course()[name]
+    given = dict(exercise.variant(5).given)
+    step = 0.02
+    ends = {**given, "theta2": given["theta2"] + step * np.array([-1, 1])}
+    torque = exercise.solve(only="torque", **given)["torque"]
+    turn = np.radians(2 * step)
+    if name == "toggle":
+        work = given["M4"] * np.radians(np.ptp(np.sort(exercise.solve(only="theta4", **ends)["theta4"])))
+        work *= np.sign(np.diff(exercise.solve(only="theta4", **ends)["theta4"]))[0]
+    else:
+        point = {"offset_slider": "xB", "atkinson_engine": "xE"}[name]
+        work = given["F"] * np.diff(exercise.solve(only=point, **ends)[point])[0] / 1000
+    assert torque * turn == pytest.approx(-work, rel=1e-5)
+
+
+def _both(name, other, arguments, answers, renamed=None, count=300):
+    """Return the answers of a file and of the hand-written solution for the variants of the latter."""
+    theirs = open_course()[other]
+    variants = theirs.variants(range(count))
+    given = {n: np.array([v.given[n] for v in variants]) for n in arguments}
+    sides = {n: np.array([v.given[n] for v in variants]) for n in (renamed or {})}
+    own = {n: v for n, v in given.items() if n in course()[name].quantity_names}
+    own |= {(renamed or {})[n]: np.where(v == "open", "left", "right") for n, v in sides.items()}
+    mine = course()[name].solve(only=list(answers), **own)
+    right = theirs.solve(only=list(answers.values()), **given, **sides)
+    return [(mine[a], right[b], a) for a, b in answers.items()]
+
+
+@each_row(
+    "name, other, arguments, answers, renamed",
+    [
+        (
+            "four_bar_file", "four_bar_motion", ("r1", "r2", "r3", "r4", "theta2", "omega2", "alpha2"),
+            {n: n for n in ("theta3", "theta4", "omega3", "omega4", "alpha3", "alpha4")}, {"mode": "mode_B"},
+        ),
+        (
+            "offset_slider", "slider_crank", ("r2", "r3", "e", "theta2", "omega2", "alpha2"),
+            {"theta3": "theta3", "x": "r1", "omega3": "omega3", "x_dot": "r1_dot", "alpha3": "alpha3", "x_ddot": "r1_ddot"}, {},
+        ),
+        (
+            "slotted_file", "slotted_mechanism", ("r1", "r2", "theta2", "omega2", "alpha2"),
+            {"theta4": "theta4", "r4": "rA", "omega4": "omega4", "r4_dot": "rA_dot", "alpha4": "alpha4", "r4_ddot": "rA_ddot"}, {},
+        ),
+        (
+            "two_loops_file", "two_loop_linkage",
+            ("xC", "yC", "xF", "yF", "r2", "r3", "r4", "r5", "beta", "r6", "r7", "theta2", "omega2"),
+            {f"{s}{k}": f"{s}{k}" for s in ("theta", "omega", "alpha") for k in (3, 4, 6, 7)},
+            {"mode_1": "mode_B", "mode_2": "mode_E"},
+        ),
+    ],
+)  # fmt: skip
+def test_files_agree_with_the_solutions_written_by_hand(name, other, arguments, answers, renamed):
+    for mine, right, answer in _both(name, other, arguments, answers, renamed):
+        apart = np.asarray(mine) - right
+        if answer.startswith("theta"):
+            apart = (apart + 180) % 360 - 180
+        size = np.max(np.abs(right))
+        assert np.max(np.abs(apart)) <= 1e-12 * size, answer
+
+
+def test_a_group_of_class_three_is_followed_over_the_whole_turn():
+    """Closed everywhere, and continuous: no jump to another assembly between neighbouring positions."""
+    exercise = course()["class_three"]
+    given = dict(exercise.variant(0).given)
+    turn = np.arange(-180.0, 181.0, 1.0)
+    names = ("theta3", "theta4", "theta5", "theta6")
+    found = exercise.solve(only=names, **{**given, "theta2": turn})
+    for name in names:
+        steps = (np.diff(found[name]) + 180) % 360 - 180
+        assert np.all(np.isfinite(found[name]))
+        assert np.max(np.abs(steps)) < 5, name
+    gaps = exercise.solution.residual_graph.evaluate(("residual",), {**given, "theta2": turn})["residual"]
+    assert np.max(gaps) < 1e-12
+
+
+def test_a_group_that_does_not_close_is_nan_there_and_says_so_alone():
+    from coursework.errors import CannotAssemble
+
+    exercise = course()["four_bar_file"]
+    given = {
+        "r1": 200,
+        "r2": 150,
+        "r3": 60,
+        "r4": 60,
+        "theta2": 150,
+        "omega2": 1,
+        "alpha2": 0,
+        "mode_B": "left",
+    }
+    with pytest.raises(CannotAssemble):
+        exercise.solve(only="theta3", **given)
+    found = exercise.solve(only="theta3", **{**given, "theta2": np.array([10.0, 150.0])})["theta3"]
+    assert np.isfinite(found[0])
+    assert np.isnan(found[1])
