@@ -1,11 +1,10 @@
-"""Mechanisms stated as files, for tests."""
+"""Mechanisms stated as files, for tests: those that come with the package."""
 
 from functools import cache
-from pathlib import Path
 
 from coursework import open_course
+from coursework.authoring.linkage_files import LINKAGES as FOLDER
 
-FOLDER = Path(__file__).parent / "linkages" / "course"
 NAMES = tuple(sorted(p.stem for p in (FOLDER / "exercises").glob("*.toml") if p.stem != "course"))
 
 

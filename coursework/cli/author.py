@@ -20,13 +20,16 @@ from coursework.cli.options import (
     exercises_argument,
     json_option,
     known_languages,
+    lang_option,
     opened,
+    seed_option,
     shared_by_cluster,
     unknown_language,
     writes,
 )
 from coursework.cli.printing import print_json, print_note, print_table, progress_bar, say
 from coursework.errors import BadInput
+from coursework.messages import localised
 from coursework.system.limits import MOST_VARIANTS
 
 # ------------------------------------------------------------------------ check
@@ -93,6 +96,17 @@ def check(
 @click.option(
     "--example", metavar="NAME", help="Copy a whole course that comes with the package: engineering."
 )
+@click.option(
+    "--linkage",
+    metavar="NAME",
+    help="Start from a mechanism's file, without any Python: four_bar, slider_crank, slotted_lever and others.",
+)
+@click.option(
+    "--from-pylinkage",
+    "pylinkage",
+    type=FilePath(path_type=Path, dir_okay=False),
+    help="Start from the mechanism in a JSON file of pylinkage.",
+)
 @click.pass_context
 def new(
     context: click.Context,
@@ -103,6 +117,8 @@ def new(
     langs: Sequence[str] | None,
     asked: Sequence[str],
     example: str | None,
+    linkage: str | None,
+    pylinkage: Path | None,
 ) -> None:
     """Create a course folder, an exercise in a course, or a copy of an exercise to change.
 
@@ -138,7 +154,9 @@ def new(
         )
     spoken = langs or languages_around(os.environ)
     there: list[Path] = []
-    if source is not None:
+    if linkage is not None or pylinkage is not None:
+        written = _new_linkage(folder, exercise or renamed, linkage, pylinkage, spoken)
+    elif source is not None:
         written, there = _copied(context, folder, source, renamed or source, spoken)
     elif exercise is not None:
         written = new_exercise(folder, exercise, spoken)
@@ -149,6 +167,17 @@ def new(
     for path in there:
         say("{path} exists already with the same content", path=path)
     say("try: coursework --course {folder} check", folder=folder)
+
+
+def _new_linkage(
+    folder: Path, name: str | None, linkage: str | None, pylinkage: Path | None, langs: Sequence[str]
+) -> list[Path]:
+    from coursework.authoring.linkage_files import new_from_pylinkage, new_linkage
+
+    if pylinkage is not None:
+        return new_from_pylinkage(folder, pylinkage, name or pylinkage.stem, langs)
+    assert linkage is not None
+    return new_linkage(folder, linkage, name or linkage, langs)
 
 
 def _new_example(folder: Path, name: str, more: object) -> None:
@@ -184,3 +213,44 @@ def _copied(
     from coursework.course.folder import course_folder
 
     return copy_exercise(course_folder(context.obj), source, folder, renamed, langs)
+
+
+# --------------------------------------------------------------------- mechanism
+
+
+@click.command()
+@click.argument("file", type=FilePath(path_type=Path, dir_okay=False))
+@seed_option
+@lang_option
+@click.option(
+    "--out",
+    type=FilePath(path_type=Path, file_okay=False),
+    help="Folder to write the figure (SVG) and the motion (HTML) to.",
+)
+@json_option
+@click.pass_context
+def mechanism(
+    context: click.Context, file: Path, seed: int, lang: str, out: Path | None, as_json: bool
+) -> None:
+    """Show what a mechanism's file states: mobility, groups, class, range of the driver, limits.
+
+    No course and no question is needed. Quantities that are drawn have the values of --seed.
+    """
+    from coursework.api import open_course
+    from coursework.authoring.linkage_files import mechanism_alone, report
+    from coursework.system.writing import write_whole
+
+    with mechanism_alone(file, open_course) as (exercise, made):
+        rows = report(exercise, made, seed)
+        if as_json:
+            print_json({str(row["property"]): str(row["value"]) for row in rows})
+        else:
+            print_table([{key: localised(value) for key, value in row.items()} for row in rows])
+        if out is None:
+            return
+        writes(context, out)
+        variant = exercise.variant(seed, lang)
+        animation = variant.animation([])
+        for ending, text in (("svg", variant.figure.svg()), ("html", animation.html(is_answered=True))):
+            write_whole(out / f"{file.stem}.{ending}", text.encode("utf-8"))
+            click.echo(f"{out / file.stem}.{ending}")

@@ -31,6 +31,7 @@ COMMANDS = {
     "lesson": ("teach", "lesson"),
     "list": ("look", "list_exercises"),
     "lti": ("lti", "lti"),
+    "mechanism": ("author", "mechanism"),
     "new": ("author", "new"),
     "notebook": ("teach", "notebook"),
     "preview": ("site", "preview"),

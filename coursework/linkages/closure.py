@@ -48,7 +48,7 @@ def turns_round(
     return good.reshape(*shape, _STEPS).all(axis=-1)
 
 
-class Track(NamedTuple):
+class SlideTrack(NamedTuple):
     """Slide as the file states it: the sliding point, its body, the guide, a place on the line and its direction in the guide's frame
     (mm, degrees; quantities or functions of them), the quantity that is the distance along it."""
 
@@ -62,7 +62,7 @@ class Track(NamedTuple):
 
 def closure_gaps(
     mechanism: Mechanism,
-    tracks: Sequence[Track],
+    tracks: Sequence[SlideTrack],
     sides: Sequence[tuple[str, str, str, str]],
     driver: str,
     order: int,
@@ -135,7 +135,7 @@ class _Frames:
         return begin[0] + arm, begin[1] + 1j * rate * arm, begin[2] + (1j * gain - rate**2) * arm
 
     def gaps(
-        self, tracks: Sequence[Track], sides: Sequence[tuple[str, str, str, str]], order: int
+        self, tracks: Sequence[SlideTrack], sides: Sequence[tuple[str, str, str, str]], order: int
     ) -> list[float]:
         """Return the gaps of pins and slides over the sizes of their terms."""
         linkage = self.linkage
@@ -160,7 +160,7 @@ class _Frames:
             results.append(max(-area * float(linkage.values[side]), 0.0))
         return results
 
-    def _of_track(self, track: Track, order: int, sizes: tuple[float, float, float]) -> list[float]:
+    def _of_track(self, track: SlideTrack, order: int, sizes: tuple[float, float, float]) -> list[float]:
         linkage = self.linkage
         of, on = linkage.index[track.of], linkage.index[track.on]
         if of in self.free or on in self.free:

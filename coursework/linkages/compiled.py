@@ -13,7 +13,7 @@ from types import ModuleType
 
 from coursework.errors import BadInput, CourseworkError
 from coursework.linkages.drawing import FigureWriter
-from coursework.linkages.expressions import Expression, ExpressionReader
+from coursework.linkages.expressions import ExpressionReader, QuantityExpression
 from coursework.linkages.formulas import FormulaWriter, Quantity, names_in, vector_code
 from coursework.linkages.groups import Dyad
 from coursework.linkages.linkage_file import (
@@ -27,6 +27,7 @@ from coursework.linkages.linkage_file import (
 from coursework.linkages.questions import QuestionWriter
 from coursework.linkages.sentences import exercise_text, solution_text, spoken
 from coursework.linkages.vectors import PolygonWriter
+from coursework.messages import Message
 
 _IMPORTS = """\
 import numpy as np
@@ -35,7 +36,7 @@ from math import pi
 from coursework.degrees import acos, angle, atan2, cos, from_radians, polar, sin, sqrt, tan, wrap
 from coursework.kinematics import dyads
 from coursework.kinematics.chains import Vector
-from coursework.linkages.closure import Track, closure_gaps, turns_round
+from coursework.linkages.closure import SlideTrack, closure_gaps, turns_round
 from coursework.linkages.large import LargeGroup
 """
 _EXERCISE_IMPORTS = """\
@@ -204,27 +205,36 @@ class CompiledLinkage:
         required = [required] if isinstance(required, str) else required
         if not isinstance(required, list) or not all(isinstance(r, str) for r in required):
             raise self.linkage.refused(
-                ("given", "require"), f'require = ["r2 < r4", "is_crank(2)"]; found {required!r}'
+                ("given", "require"),
+                Message('require = ["r2 < r4", "is_crank(2)"]; found {required!r}', required=required),
             )
         return required
 
-    def _is_crank(self, *arguments: str) -> Expression:
+    def _is_crank(self, *arguments: str) -> QuantityExpression:
         if arguments != (self.linkage.driver,):
             raise self.linkage.refused(
                 ("given", "require"),
-                f"is_crank({self.linkage.driver}) says that the driven body turns all round; found is_crank({', '.join(arguments)})",
+                Message(
+                    "is_crank({driver}) says that the driven body turns all round; found is_crank({found})",
+                    driver=self.linkage.driver,
+                    found=", ".join(arguments),
+                ),
             )
-        return Expression("crank_turns", ("crank_turns",))
+        return QuantityExpression("crank_turns", ("crank_turns",))
 
-    def _transmission_angle(self, *arguments: str) -> Expression:
+    def _transmission_angle(self, *arguments: str) -> QuantityExpression:
         sines = self.formulas.sines
         if len(arguments) != 1 or arguments[0] not in sines:
             raise self.linkage.refused(
                 ("given", "require"),
-                f"transmission_angle(B) is that at an inner joint: {', '.join(sines) or 'there is none'}; found {', '.join(arguments)}",
+                Message(
+                    "transmission_angle(B) is that at an inner joint: {value}; found {found}",
+                    value=", ".join(sines) or "there is none",
+                    found=", ".join(arguments),
+                ),
             )
         code = f"np.degrees(np.arcsin(np.minimum(abs({sines[arguments[0]]}), 1)))"
-        return Expression(code, names_in(code))
+        return QuantityExpression(code, names_in(code))
 
     # ------------------------------------------------------------------ solution
 
@@ -349,7 +359,7 @@ class CompiledLinkage:
 
     def _tracks(self) -> list[str]:
         return [
-            f"Track({s.at!r}, {s.of!r}, {s.on!r}, {_place(s.through)}, {_code(s.along)}, {s.distance!r}), "
+            f"SlideTrack({s.at!r}, {s.of!r}, {s.on!r}, {_place(s.through)}, {_code(s.along)}, {s.distance!r}), "
             for s in self.linkage.slides.values()
         ]
 
@@ -495,7 +505,7 @@ def _given(entry: GivenEntry) -> str:
     return f"drawn({low}, {high}, step={entry.step}, unit={entry.unit!r}{more})"
 
 
-def _code(expression: Expression) -> str:
+def _code(expression: QuantityExpression) -> str:
     """Return an expression as a place of a mechanism: a name, a number or a function."""
     if expression.is_name:
         return repr(expression.code)

@@ -21,8 +21,8 @@ _COMPARISONS: Mapping[type, str] = {ast.Lt: "<", ast.LtE: "<=", ast.Gt: ">", ast
 
 
 @dataclass(frozen=True)
-class Expression:
-    """Expression as Python code over quantities, in their canonical units."""
+class QuantityExpression:
+    """QuantityExpression as Python code over quantities, in their canonical units."""
 
     code: str
     names: tuple[str, ...] = ()
@@ -43,7 +43,7 @@ class Expression:
         return self.code.isidentifier()
 
 
-ZERO = Expression("0")
+ZERO = QuantityExpression("0")
 
 
 def _number(code: str) -> float | None:
@@ -75,7 +75,7 @@ def amount(text: object, unit: str) -> float:
     if isinstance(text, (int, float)) and not isinstance(text, bool):
         if unit == "1":
             return float(text)
-        raise WrongValue(f'a unit is missing: "{text:g} {unit}"')
+        raise WrongValue(Message('a unit is missing: "{text:g} {unit}"', text=text, unit=unit))
     match = re.fullmatch(r"\s*([+-]?\d+(?:\.\d+)?(?:[eE][+-]?\d+)?)\s*(.*?)\s*", str(text))
     if match is None:
         raise WrongValue(
@@ -84,7 +84,7 @@ def amount(text: object, unit: str) -> float:
     if not match[2]:
         if unit == "1":
             return float(match[1])
-        raise WrongValue(f'a unit is missing: "{match[1]} {unit}"')
+        raise WrongValue(Message('a unit is missing: "{value} {unit}"', value=match[1], unit=unit))
     return float(convert(float(match[1]), parse_unit(match[2]), unit))
 
 
@@ -122,12 +122,12 @@ class ExpressionReader:
     """
 
     def __init__(
-        self, units: Mapping[str, str], calls: Mapping[str, Callable[..., Expression]] | None = None
+        self, units: Mapping[str, str], calls: Mapping[str, Callable[..., QuantityExpression]] | None = None
     ) -> None:
         self.units = units
         self.calls = calls or {}
 
-    def read(self, text: object, unit: str) -> Expression:
+    def read(self, text: object, unit: str) -> QuantityExpression:
         """Read an expression whose value has a unit.
 
         Parameters
@@ -147,7 +147,7 @@ class ExpressionReader:
             It cannot be read, names no quantity, or has another dimension.
         """
         if isinstance(text, (int, float)) and not isinstance(text, bool):
-            return Expression(f"{amount(text, unit):.15g}")
+            return QuantityExpression(f"{amount(text, unit):.15g}")
         tree, literals = self._tree(text)
         code, names, found = self._of(tree, literals)
         if found is not None and not _alike(found, unit):
@@ -155,7 +155,7 @@ class ExpressionReader:
             if number is not None and found == "1":
                 if number == 0:
                     return ZERO
-                raise WrongValue(f'a unit is missing: "{number:g} {unit}"')
+                raise WrongValue(Message('a unit is missing: "{number:g} {unit}"', number=number, unit=unit))
             raise WrongValue(
                 Message(
                     "{text} is in {found}, where a value in {unit} stands",
@@ -164,9 +164,9 @@ class ExpressionReader:
                     unit=unit,
                 )
             )
-        return Expression(code, names)
+        return QuantityExpression(code, names)
 
-    def condition(self, text: object) -> Expression:
+    def condition(self, text: object) -> QuantityExpression:
         """Read a condition: comparisons and calls, joined by ``and`` and ``or``.
 
         Raises
@@ -176,7 +176,7 @@ class ExpressionReader:
         """
         tree, literals = self._tree(text)
         code, names = self._condition(tree, literals, str(text))
-        return Expression(code, names)
+        return QuantityExpression(code, names)
 
     def _tree(self, text: object) -> tuple[ast.expr, dict[str, tuple[float, str]]]:
         if not isinstance(text, str) or not text.strip() or len(text) > 500:
@@ -314,7 +314,7 @@ class ExpressionReader:
             return found.code, found.names, "deg"
         return self._of(node, literals)
 
-    def _called(self, node: ast.Call) -> Expression:
+    def _called(self, node: ast.Call) -> QuantityExpression:
         assert isinstance(node.func, ast.Name)
         return self.calls[node.func.id](*(ast.unparse(a).strip("'\"") for a in node.args))
 
@@ -338,8 +338,8 @@ def _shown(unit: str) -> str:
 __all__ = [
     "FUNCTIONS",
     "ZERO",
-    "Expression",
     "ExpressionReader",
+    "QuantityExpression",
     "WrongUnit",
     "amount",
     "canonical",

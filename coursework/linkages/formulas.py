@@ -15,7 +15,7 @@ from typing import Any, TypeAlias
 import numpy as np
 
 from coursework.degrees import atan2, cos, sin, sqrt
-from coursework.linkages.groups import Dyad, Group, LargeGroup, Wheel, groups_of
+from coursework.linkages.groups import Dyad, Group, HigherGroup, Wheel, groups_of
 from coursework.linkages.linkage_file import (
     GROUND,
     AssemblyEntry,
@@ -26,6 +26,7 @@ from coursework.linkages.linkage_file import (
     SlideEntry,
 )
 from coursework.linkages.terms import Heading, Plane, Sum
+from coursework.messages import Message
 from coursework.model import symbol_of
 
 Chain: TypeAlias = list[tuple[str, str, str, str]]  #: vectors as code: length, angle, sign, turn
@@ -190,7 +191,11 @@ class FormulaWriter:
                 if top not in (GROUND, name):
                     raise linkage.refused(
                         ("bodies", name),
-                        f"body {name} slides on {top}, which turns it; it has no angle of its own",
+                        Message(
+                            "body {name} slides on {top}, which turns it; it has no angle of its own",
+                            name=name,
+                            top=top,
+                        ),
                     )
                 self.turns[name] = body.angle.code
 
@@ -221,7 +226,8 @@ class FormulaWriter:
         """Add a quantity, and return its name."""
         if name in self.linkage.given:
             raise self.linkage.refused(
-                ("given", name), f"{name} follows from the mechanism; call the given quantity otherwise"
+                ("given", name),
+                Message("{name} follows from the mechanism; call the given quantity otherwise", name=name),
             )
         words = {k: str(v) for k, v in more.pop("words", {}).items()}
         self.quantities[name] = Quantity(name, code, unit, symbol, step, words, **more)
@@ -374,7 +380,7 @@ class FormulaWriter:
                 self._two_slides(group)
             case Wheel():
                 self._wheel(group)
-            case LargeGroup():
+            case HigherGroup():
                 self._large(group)
 
     def _mode(self, point: str, default: str, ends: tuple[str, str] | None) -> str:
@@ -387,21 +393,38 @@ class FormulaWriter:
                 first, last = ends
                 raise linkage.refused(
                     ("assembly",),
-                    f'{point} can be assembled in two ways: [assembly], then {point} = "left of {first} -> {last}"',
+                    Message(
+                        '{point} can be assembled in two ways: [assembly], then {point} = "left of {first} -> {last}"',
+                        point=point,
+                        first=first,
+                        last=last,
+                    ),
                 )
             entry = AssemblyEntry((default,), ends[0] if ends else "")
         wanted = {"left", "right"} if ends and ends[1] else {"ahead", "behind"}
         if not set(entry.ways) <= wanted:
             raise linkage.refused(
                 ("assembly", point),
-                f"{point} is assembled {' or '.join(sorted(wanted))}; found {entry.ways[0]}",
+                Message(
+                    "{point} is assembled {found}; found {value}",
+                    point=point,
+                    found=" or ".join(sorted(wanted)),
+                    value=entry.ways[0],
+                ),
             )
         sign = 1
         if ends and ends[1]:
             if {entry.start, entry.end} != set(ends):
                 raise linkage.refused(
                     ("assembly", point),
-                    f"{point} lies left or right of {ends[0]} -> {ends[1]}; found {entry.start} -> {entry.end}",
+                    Message(
+                        "{point} lies left or right of {value} -> {value_2}; found {start} -> {end}",
+                        point=point,
+                        value=ends[0],
+                        value_2=ends[1],
+                        start=entry.start,
+                        end=entry.end,
+                    ),
                 )
             sign = 1 if (entry.start, entry.end) == ends else -1
         self.modes[point] = entry
@@ -820,7 +843,10 @@ class FormulaWriter:
         )
         if below.vanishes:
             raise self.linkage.refused(
-                ("slides", other.at), f"the slides at {one.at} and {other.at} are parallel: they hold nothing"
+                ("slides", other.at),
+                Message(
+                    "the slides at {at} and {at_2} are parallel: they hold nothing", at=one.at, at_2=other.at
+                ),
             )
         words = {
             "B": name,
@@ -957,19 +983,22 @@ class FormulaWriter:
 
     # -------------------------------------------------------------- larger groups
 
-    def _large(self, group: LargeGroup) -> None:
+    def _large(self, group: HigherGroup) -> None:
         linkage = self.linkage
         if linkage.near is None:
             raise linkage.refused(
                 ("assembly",),
-                f"bodies {', '.join(group.bodies)} are one group of class {'I' * group.rank if group.rank < 4 else group.rank}: "
-                'say from where Newton\'s method starts: near = { angle = "60 deg", E = ["120 mm", "80 mm"], … }',
+                Message(
+                    'bodies {found} are one group of class {value}: say from where Newton\'s method starts: near = {{ angle = "60 deg", E = ["120 mm", "80 mm"], … }}',
+                    found=", ".join(group.bodies),
+                    value="I" * group.rank if group.rank < 4 else group.rank,
+                ),
             )
         slides = [s for s in linkage.slides.values() if {s.of, s.on} & {*group.bodies}]
         if slides:
             raise linkage.refused(
                 ("slides", slides[0].at),
-                "a group of class III or higher is solved if all its joints are pins",
+                Message("a group of class III or higher is solved if all its joints are pins"),
             )
         number = 1 + sum(name.startswith("_chain_") for name in self.quantities)
         loops, placed = self._loops(group)
@@ -1029,7 +1058,7 @@ class FormulaWriter:
                 waiting += [n for n in needs if n in self.quantities]
         return list(results.values())
 
-    def _loops(self, group: LargeGroup) -> tuple[list[Chain], list[str]]:
+    def _loops(self, group: HigherGroup) -> tuple[list[Chain], list[str]]:
         """Return the independent loops of a group, and the names of the coordinates of placed points in them."""
         joints = {
             point: [b for b in bodies if b in group.bodies]
@@ -1113,20 +1142,24 @@ class FormulaWriter:
         places = dict(near.places)
         for point in linkage.bodies[body].points:
             if point not in places and point in linkage.ground:
-                places[point] = _value(self.local(point, GROUND), values)
+                places[point] = value_of(self.local(point, GROUND), values)
             elif point not in places and point in linkage.bodies[linkage.driver].points:
                 crank = linkage.bodies[linkage.driver]
-                turned = _value(_rotated(self.local(point, crank.name), Heading.of(linkage.angle)), values)
-                places[point] = _value(self.local(crank.at, GROUND), values) + turned
+                turned = value_of(_rotated(self.local(point, crank.name), Heading.of(linkage.angle)), values)
+                places[point] = value_of(self.local(crank.at, GROUND), values) + turned
         points = [p for p in linkage.bodies[body].points if p in places]
         if len(points) < 2:
             raise linkage.refused(
                 ("assembly", "near"),
-                f"near tells the places of two points of body {body}; found {', '.join(points) or 'none'} of "
-                f"{', '.join(linkage.bodies[body].points)}",
+                Message(
+                    "near tells the places of two points of body {body}; found {value} of {found}",
+                    body=body,
+                    value=", ".join(points) or "none",
+                    found=", ".join(linkage.bodies[body].points),
+                ),
             )
         first, second = points[:2]
-        own = _value(self.local(second, body), values) - _value(self.local(first, body), values)
+        own = value_of(self.local(second, body), values) - value_of(self.local(first, body), values)
         return float(np.angle((places[second] - places[first]) / own))
 
     def _loop_text(self, loops: Sequence[Chain]) -> str:
@@ -1145,7 +1178,8 @@ class FormulaWriter:
             if any(h in self.order for h in self.linkage.holders(point)):
                 return point
         raise self.linkage.refused(
-            ("bodies", body), f"body {body} shares no point with a body that stands before it in the file"
+            ("bodies", body),
+            Message("body {body} shares no point with a body that stands before it in the file", body=body),
         )
 
     @property
@@ -1235,10 +1269,10 @@ def _middle(entry: GivenEntry) -> float:
 
 def middle_value(vector: Plane, linkage: LinkageFile) -> complex:
     """Return a vector of given quantities, each in the middle of its range, as a number."""
-    return _value(vector, {n: _middle(entry) for n, entry in linkage.given.items()})
+    return value_of(vector, {n: _middle(entry) for n, entry in linkage.given.items()})
 
 
-def _value(vector: Plane, values: Mapping[str, float]) -> complex:
+def value_of(vector: Plane, values: Mapping[str, float]) -> complex:
     """Return a vector of given quantities as a number."""
     space = {**values, "sin": sin, "cos": cos, "sqrt": sqrt, "atan2": atan2, "np": np}
     return complex(eval(vector.x.code, space), eval(vector.y.code, space))  # written by ExpressionReader

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 from coursework.errors import CourseworkError
 from coursework.linkages.linkage_file import GROUND, GearEntry, LinkageFile, SlideEntry
+from coursework.messages import Message
 from coursework.structure.assour import Decomposition, decompose
 
 Joint = str | SlideEntry  #: a point that is a pin, or a slide
@@ -46,14 +47,14 @@ class Wheel:
 
 
 @dataclass(frozen=True)
-class LargeGroup:
+class HigherGroup:
     """Group of four bodies or more, of class III or higher."""
 
     bodies: tuple[str, ...]
     rank: int
 
 
-Group = Dyad | Wheel | LargeGroup
+Group = Dyad | Wheel | HigherGroup
 
 
 def groups_of(linkage: LinkageFile) -> tuple[tuple[Group, ...], int]:
@@ -92,12 +93,13 @@ def groups_of(linkage: LinkageFile) -> tuple[tuple[Group, ...], int]:
             if group.rank == 2 and len(bodies) == 2:
                 groups.append(_dyad(linkage, bodies, placed))
             else:
-                groups.append(LargeGroup(bodies, group.rank))
+                groups.append(HigherGroup(bodies, group.rank))
             placed += bodies
         else:
             left = next(iter(wheels.values()))
             raise linkage.refused(
-                ("gears",), f"the wheel {left.body} rolls on a body that is placed only after it"
+                ("gears",),
+                Message("the wheel {body} rolls on a body that is placed only after it", body=left.body),
             )
     return tuple(groups), decomposition.rank if decomposition else 1
 
@@ -126,7 +128,12 @@ def _wheels(linkage: LinkageFile) -> dict[str, Wheel]:
         else:
             raise linkage.refused(
                 ("gears",),
-                f"the gear of {gear.first} and {gear.second} turns no body that is pinned to the carrier {gear.carrier}",
+                Message(
+                    "the gear of {first} and {second} turns no body that is pinned to the carrier {carrier}",
+                    first=gear.first,
+                    second=gear.second,
+                    carrier=gear.carrier,
+                ),
             )
     return results
 
@@ -194,7 +201,11 @@ def _dyad(linkage: LinkageFile, bodies: tuple[str, ...], placed: Sequence[str]) 
         if all(isinstance(e, SlideEntry) for e in ends):
             raise linkage.refused(
                 ("slides",),
-                f"bodies {p} and {q} are held by three slides: they cannot turn, and are held twice",
+                Message(
+                    "bodies {p} and {q} are held by three slides: they cannot turn, and are held twice",
+                    p=p,
+                    q=q,
+                ),
             )
         if isinstance(ends[0], SlideEntry) or (all(isinstance(e, str) for e in ends) and middle.of == q):
             p, q, ends = q, p, ends[::-1]

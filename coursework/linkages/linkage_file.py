@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from coursework.errors import BadCourse, BadInput, CourseworkError, nearest
-from coursework.linkages.expressions import ZERO, Expression, ExpressionReader, amount, unit_of
+from coursework.linkages.expressions import ZERO, ExpressionReader, QuantityExpression, amount, unit_of
 from coursework.messages import Message, as_message
 from coursework.system.toml_files import TomlReader, source_of, table_of
 
@@ -31,10 +31,10 @@ _AHEAD = re.compile(r"\s*(ahead of|behind)\s+([A-Z]\d*)\s*\Z")
 class Place:
     """Point in a frame: by coordinates, or by distance and direction from the frame's origin."""
 
-    x: Expression = ZERO
-    y: Expression = ZERO
-    radius: Expression | None = None
-    angle: Expression = ZERO
+    x: QuantityExpression = ZERO
+    y: QuantityExpression = ZERO
+    radius: QuantityExpression | None = None
+    angle: QuantityExpression = ZERO
 
     @property
     def is_origin(self) -> bool:
@@ -53,8 +53,8 @@ class GivenEntry:
 
     unit: str
     value: float | None = None
-    low: Expression = ZERO
-    high: Expression = ZERO
+    low: QuantityExpression = ZERO
+    high: QuantityExpression = ZERO
     step: str = "1"
     nonzero: bool = False
     positive: bool = False
@@ -67,7 +67,7 @@ class BodyEntry:
     name: str
     points: Mapping[str, Place]
     at: str
-    angle: Expression | None = None
+    angle: QuantityExpression | None = None
 
 
 @dataclass(frozen=True)
@@ -80,7 +80,7 @@ class SlideEntry:
     on: str
     through: Place
     through_name: str
-    along: Expression
+    along: QuantityExpression
     distance: str
 
 
@@ -91,7 +91,7 @@ class GearEntry:
     first: str
     second: str
     carrier: str
-    radii: tuple[Expression, Expression]
+    radii: tuple[QuantityExpression, QuantityExpression]
     inner: bool
 
 
@@ -122,9 +122,9 @@ class LoadEntry:
     """Load on a body: a moment, or a force at a point in a direction; expressions in N m, N, degrees."""
 
     on: str
-    moment: Expression | None = None
-    force: Expression | None = None
-    angle: Expression = ZERO
+    moment: QuantityExpression | None = None
+    force: QuantityExpression | None = None
+    angle: QuantityExpression = ZERO
 
 
 @dataclass(frozen=True)
@@ -234,7 +234,9 @@ class _LinkageReader(TomlReader):
         given = self._given()
         ground = self._places(("ground",))
         if not ground:
-            raise self.refused(("ground",), 'the ground has points: [ground], then O = ["0 mm", "0 mm"]')
+            raise self.refused(
+                ("ground",), Message('the ground has points: [ground], then O = ["0 mm", "0 mm"]')
+            )
         bodies = self._bodies(ground)
         slides = self._slides(ground, bodies)
         driver, angle = self._driver(bodies, given)
@@ -264,13 +266,17 @@ class _LinkageReader(TomlReader):
         for key in at:
             result = result.get(key, {}) if isinstance(result, Mapping) else {}
         if not isinstance(result, Mapping):
-            raise self.refused(at, f"{at[-1]} is a table; found {result!r}")
+            raise self.refused(
+                at, Message("{value} is a table; found {result!r}", value=at[-1], result=result)
+            )
         return result
 
     def _whole(self, key: str, otherwise: int) -> int:
         value = self.table.get(key, otherwise)
         if not isinstance(value, int) or isinstance(value, bool) or value < 1:
-            raise self.refused((key,), f"{key} is a whole number from 1 on; found {value!r}")
+            raise self.refused(
+                (key,), Message("{key} is a whole number from 1 on; found {value!r}", key=key, value=value)
+            )
         return value
 
     def _title(self) -> Mapping[str, str]:
@@ -282,7 +288,10 @@ class _LinkageReader(TomlReader):
             or not title
             or not all(isinstance(t, str) and t for t in title.values())
         ):
-            raise self.refused(("title",), 'a title in each language: title = { fr = "…", en = "…" }')
+            raise self.refused(
+                ("title",),
+                Message("a title in each language: {example}", example='title = { fr = "…", en = "…" }'),
+            )
         return title
 
     def _checked(self, at: Sequence[str | int], read: Callable[..., Any], *arguments: Any) -> Any:
@@ -294,9 +303,11 @@ class _LinkageReader(TomlReader):
         except CourseworkError as fault:
             raise self.refused(at, fault.args[0] if fault.args else str(fault)) from fault
 
-    def _expression(self, at: Sequence[str | int], text: object, unit: str, name: str = "") -> Expression:
+    def _expression(
+        self, at: Sequence[str | int], text: object, unit: str, name: str = ""
+    ) -> QuantityExpression:
         """Read an expression; a number other than 0 becomes a given quantity of that name, which the sheet lists among its data."""
-        found: Expression = self._checked(at, ExpressionReader(self.units).read, text, unit)
+        found: QuantityExpression = self._checked(at, ExpressionReader(self.units).read, text, unit)
         if (
             not name
             or not found.is_number
@@ -308,7 +319,7 @@ class _LinkageReader(TomlReader):
             name += "_"
         self.units[name] = unit
         self.constants[name] = GivenEntry(unit, value=float(found.code))
-        return Expression(name, (name,))
+        return QuantityExpression(name, (name,))
 
     # --------------------------------------------------------------------- given
 
@@ -320,7 +331,9 @@ class _LinkageReader(TomlReader):
                 continue
             at = ("given", name)
             if not _NAME.match(name):
-                raise self.refused(at, f"{name!r} is no name of a quantity: letters, digits, _")
+                raise self.refused(
+                    at, Message("{name!r} is no name of a quantity: letters, digits, _", name=name)
+                )
             results[name] = self._entry(at, name, value)
             self.units[name] = results[name].unit
         return results
@@ -333,7 +346,10 @@ class _LinkageReader(TomlReader):
         self.only(value, ("from", "to", "step", "nonzero"), at, name)
         if "from" not in value or "to" not in value:
             raise self.refused(
-                at, f'{name} is "180 mm", or {{ from = "40 mm", to = "70 mm", step = "5 mm" }}'
+                at,
+                Message(
+                    '{name} is "180 mm", or {{ from = "40 mm", to = "70 mm", step = "5 mm" }}', name=name
+                ),
             )
         step = value.get("step", value["from"] if False else None)
         units = [self._checked(at, unit_of, v) for v in (value["from"], value["to"], step) if _is_amount(v)]
@@ -342,10 +358,16 @@ class _LinkageReader(TomlReader):
         low, high = (self._expression((*at, key), value[key], unit) for key in ("from", "to"))
         width = self._checked((*at, "step"), amount, step, unit) if step is not None else 1.0
         if not width > 0:
-            raise self.refused((*at, "step"), f"a step is above 0; found {step}")
+            raise self.refused((*at, "step"), Message("a step is above 0; found {step}", step=step))
         if low.is_number and high.is_number and float(low.code) > float(high.code):
             raise self.refused(
-                at, f"{name} goes from the smaller value to the greater; found {value['from']}, {value['to']}"
+                at,
+                Message(
+                    "{name} goes from the smaller value to the greater; found {value}, {value_2}",
+                    name=name,
+                    value=value["from"],
+                    value_2=value["to"],
+                ),
             )
         exact = f"{Fraction(width).limit_denominator(10**6).numerator / Fraction(width).limit_denominator(10**6).denominator:.9g}"
         positive = unit == "mm" and (not low.is_number or float(low.code) > 0)
@@ -370,7 +392,10 @@ class _LinkageReader(TomlReader):
         for name, value in table.items():
             if not _POINT.match(name):
                 raise self.refused(
-                    (*at, name), f"a point is called by a capital letter, such as A or O2; found {name!r}"
+                    (*at, name),
+                    Message(
+                        "a point is called by a capital letter, such as A or O2; found {name!r}", name=name
+                    ),
                 )
             results[name] = self._place(
                 (*at, name), value, (f"x{name}", f"x{name}", f"y{name}", f"gamma_{name}")
@@ -392,7 +417,10 @@ class _LinkageReader(TomlReader):
                 angle=self._expression(at, value["angle"], "deg", names[3]),
             )
         raise self.refused(
-            at, f'a place is "r2", ["x", "y"] or {{ r = "r5", angle = "beta" }}; found {value!r}'
+            at,
+            Message(
+                'a place is "r2", ["x", "y"] or {{ r = "r5", angle = "beta" }}; found {value!r}', value=value
+            ),
         )
 
     # -------------------------------------------------------------------- bodies
@@ -402,7 +430,10 @@ class _LinkageReader(TomlReader):
         if not table:
             raise self.refused(
                 ("bodies",),
-                'a mechanism has bodies: [bodies], then 2 = { at = "O", angle = "theta2", points = { A = "r2" } }',
+                Message(
+                    "a mechanism has bodies: [bodies], then {example}",
+                    example='2 = { at = "O", angle = "theta2", points = { A = "r2" } }',
+                ),
             )
         results = {}
         for name, value in table.items():
@@ -410,18 +441,27 @@ class _LinkageReader(TomlReader):
             if not _BODY.match(name):
                 raise self.refused(
                     at,
-                    f"a body is called by a number from 2 on, or a small letter; found {name!r} (the ground is 1)",
+                    Message(
+                        "a body is called by a number from 2 on, or a small letter; found {name!r} (the ground is 1)",
+                        name=name,
+                    ),
                 )
             if not isinstance(value, Mapping):
                 raise self.refused(
-                    at, f'a body is {{ points = {{ A = "0 mm", B = "r3" }} }}; found {value!r}'
+                    at,
+                    Message(
+                        'a body is {{ points = {{ A = "0 mm", B = "r3" }} }}; found {value!r}', value=value
+                    ),
                 )
             self.only(value, ("at", "angle", "points"), at, name)
             points = self._body_points(name, value)
             origin = value.get("at") or next((p for p, place in points.items() if place.is_origin), "")
             if not origin:
                 raise self.refused(
-                    at, f'body {name} says where its frame begins: at = "A", or a point at "0 mm"'
+                    at,
+                    Message(
+                        'body {name} says where its frame begins: at = "A", or a point at "0 mm"', name=name
+                    ),
                 )
             if "at" in value:
                 points = {str(origin): Place(), **points}
@@ -437,7 +477,10 @@ class _LinkageReader(TomlReader):
     def _body_points(self, name: str, value: Mapping[str, Any]) -> dict[str, Place]:
         points = value.get("points", {})
         if not isinstance(points, Mapping):
-            raise self.refused(("bodies", name), f'points = {{ A = "0 mm", B = "r3" }}; found {points!r}')
+            raise self.refused(
+                ("bodies", name),
+                Message('points = {{ A = "0 mm", B = "r3" }}; found {points!r}', points=points),
+            )
         origin = str(
             value.get("at")
             or next((p for p, place in points.items() if re.match(r"\s*0\b(?!\.)", str(place))), "")
@@ -447,7 +490,9 @@ class _LinkageReader(TomlReader):
             if not _POINT.match(point):
                 raise self.refused(
                     ("bodies", name),
-                    f"a point is called by a capital letter, such as A or O2; found {point!r}",
+                    Message(
+                        "a point is called by a capital letter, such as A or O2; found {point!r}", point=point
+                    ),
                 )
             own = (f"{origin}{point}", f"x_{point}_{name}", f"y_{point}_{name}", f"gamma_{point}")
             results[point] = self._place(("bodies", name), place, own)
@@ -458,19 +503,28 @@ class _LinkageReader(TomlReader):
         if not driven:
             raise self.refused(
                 ("bodies",),
-                'nothing drives: one body is turned by a given angle: 2 = { at = "O", angle = "theta2", … }',
+                Message(
+                    "nothing drives: one body is turned by a given angle: {example}",
+                    example='2 = { at = "O", angle = "theta2", … }',
+                ),
             )
         if len(driven) > 1:
             raise self.refused(
                 ("bodies", driven[1].name),
-                f"two bodies are driven, {driven[0].name} and {driven[1].name}; one angle drives, those of the others follow",
+                Message(
+                    "two bodies are driven, {name} and {name_2}; one angle drives, those of the others follow",
+                    name=driven[0].name,
+                    name_2=driven[1].name,
+                ),
             )
         angle = driven[0].angle
         assert angle is not None
         if not angle.is_name or not angle.code.startswith("theta"):
             raise self.refused(
                 ("bodies", driven[0].name),
-                f"the driving angle is a given quantity such as theta2; found {angle.code!r}",
+                Message(
+                    "the driving angle is a given quantity such as theta2; found {code!r}", code=angle.code
+                ),
             )
         return driven[0].name, angle.code
 
@@ -485,7 +539,11 @@ class _LinkageReader(TomlReader):
             if not isinstance(value, Mapping):
                 raise self.refused(
                     at,
-                    f'a slide is {point} = {{ of = "4", on = "ground", through = "C", along = "0 deg" }}; found {value!r}',
+                    Message(
+                        'a slide is {point} = {{ of = "4", on = "ground", through = "C", along = "0 deg" }}; found {value!r}',
+                        point=point,
+                        value=value,
+                    ),
                 )
             self.only(value, ("of", "on", "through", "along", "distance"), at, point)
             names = [*bodies, GROUND]
@@ -493,18 +551,29 @@ class _LinkageReader(TomlReader):
             on = GROUND if on == "1" else on
             for body in (of, on):
                 if body not in names:
-                    raise self.refused(at, f"no body {body!r}{nearest(body, names)}")
+                    raise self.refused(
+                        at, Message("no body {body!r}{found}", body=body, found=nearest(body, names))
+                    )
             if of == GROUND or point not in bodies[of].points:
                 raise self.refused(
-                    at, f"the sliding point {point} is a point of body {of or '…'}; it has none of this name"
+                    at,
+                    Message(
+                        "the sliding point {point} is a point of body {value}; it has none of this name",
+                        point=point,
+                        value=of or "…",
+                    ),
                 )
             if of == on:
-                raise self.refused(at, f"body {of} does not slide on itself")
+                raise self.refused(at, Message("body {of} does not slide on itself", of=of))
             through, name = self._through(at, value.get("through", ["0 mm", "0 mm"]), on, ground, bodies)
             distance = str(value.get("distance", f"s_{point}"))
             if not _NAME.match(distance) or distance in self.units:
                 raise self.refused(
-                    at, f"distance names the distance along the slide, which follows; found {distance!r}"
+                    at,
+                    Message(
+                        "distance names the distance along the slide, which follows; found {distance!r}",
+                        distance=distance,
+                    ),
                 )
             along = self._expression(at, value.get("along", "0 deg"), "deg", f"delta_{point}")
             results[point] = SlideEntry(point, of, on, through, name, along, distance)
@@ -522,7 +591,15 @@ class _LinkageReader(TomlReader):
         points = ground if on == GROUND else bodies[on].points
         if isinstance(value, str) and _POINT.match(value):
             if value not in points:
-                raise self.refused(at, f"body {on} has no point {value!r}{nearest(value, points)}")
+                raise self.refused(
+                    at,
+                    Message(
+                        "body {on} has no point {value!r}{found}",
+                        on=on,
+                        value=value,
+                        found=nearest(value, points),
+                    ),
+                )
             return points[value], value
         return self._place(at, value, (f"a_{at[-1]}", f"a_{at[-1]}", f"e_{at[-1]}", f"gamma_{at[-1]}")), ""
 
@@ -538,18 +615,22 @@ class _LinkageReader(TomlReader):
                 or not isinstance(value.get("radii"), list)
                 or len(value["radii"]) != 2
             ):
-                raise self.refused(at, f"a gear is {form}; found {value!r}")
+                raise self.refused(at, Message("a gear is {form}; found {value!r}", form=form, value=value))
             self.only(value, ("first", "second", "carrier", "radii", "inner"), at, name)
             names = [*bodies, GROUND]
             pair = [str(value.get(key, GROUND)) for key in ("first", "second", "carrier")]
             for body in pair:
                 if body not in names:
-                    raise self.refused(at, f"no body {body!r}{nearest(body, names)}")
+                    raise self.refused(
+                        at, Message("no body {body!r}{found}", body=body, found=nearest(body, names))
+                    )
             first, second = (
                 self._expression(at, r, "mm", f"R{body}")
                 for r, body in zip(value["radii"], pair, strict=False)
             )
-            results.append(GearEntry(*pair, (first, second), bool(value.get("inner", False))))
+            results.append(
+                GearEntry(pair[0], pair[1], pair[2], (first, second), bool(value.get("inner", False)))
+            )
         return tuple(results)
 
     # ------------------------------------------------------------------ assembly
@@ -568,7 +649,11 @@ class _LinkageReader(TomlReader):
             if len(ends) > 1 or len(set(ways)) < len(ways) or not ways:
                 raise self.refused(
                     at,
-                    f'the ways to assemble {point} are ["left of A -> C", "right of A -> C"]; found {value!r}',
+                    Message(
+                        'the ways to assemble {point} are ["left of A -> C", "right of A -> C"]; found {value!r}',
+                        point=point,
+                        value=value,
+                    ),
                 )
             results[point] = AssemblyEntry(ways, *ends.pop())
         return results, near
@@ -580,14 +665,24 @@ class _LinkageReader(TomlReader):
             return "ahead" if match[1] == "ahead of" else "behind", match[2], ""
         raise self.refused(
             at,
-            f'a way to assemble is "left of A -> C", "right of A -> C", "ahead of A" or "behind A"; found {text!r}',
+            Message(
+                'a way to assemble is "left of A -> C", "right of A -> C", "ahead of A" or "behind A"; found {text!r}',
+                text=text,
+            ),
         )
 
     def _near(self, value: Any) -> NearEntry:
         at = ("assembly", "near")
         form = 'near = { angle = "60 deg", E = ["120 mm", "80 mm"], F = ["150 mm", "20 mm"] }'
         if not isinstance(value, Mapping) or "angle" not in value:
-            raise self.refused(at, f"the place from which Newton's method starts is {form}; found {value!r}")
+            raise self.refused(
+                at,
+                Message(
+                    "the place from which Newton's method starts is {form}; found {value!r}",
+                    form=form,
+                    value=value,
+                ),
+            )
         angle = self._checked(at, amount, value["angle"], "deg")
         places = {}
         for point, place in value.items():
@@ -595,7 +690,13 @@ class _LinkageReader(TomlReader):
                 continue
             if not isinstance(place, list) or len(place) != 2:
                 raise self.refused(
-                    at, f"the place from which Newton's method starts is {form}; found {point} = {place!r}"
+                    at,
+                    Message(
+                        "the place from which Newton's method starts is {form}; found {point} = {place!r}",
+                        form=form,
+                        point=point,
+                        place=place,
+                    ),
                 )
             x, y = (self._checked(at, amount, each, "mm") for each in place)
             places[point] = complex(x, y)
@@ -606,18 +707,24 @@ class _LinkageReader(TomlReader):
     def _ask(self) -> Mapping[str, Any]:
         ask = self._table("ask")
         if not ask:
-            raise self.refused(("ask",), 'an exercise asks something: [ask], then positions = ["theta3"], …')
+            raise self.refused(
+                ("ask",), Message('an exercise asks something: [ask], then positions = ["theta3"], …')
+            )
         self.only(ask, ASKED, ("ask",))
         for key in ("positions", "velocities", "accelerations", "polygon", "instant_centres"):
             value = ask.get(key, [])
             if not isinstance(value, list) or not all(isinstance(each, str) for each in value):
-                raise self.refused(("ask", key), f'{key} is a list of names: ["…", "…"]; found {value!r}')
+                raise self.refused(
+                    ("ask", key),
+                    Message('{key} is a list of names: ["…", "…"]; found {value!r}', key=key, value=value),
+                )
         points = ask.get("points", {})
         if not isinstance(points, Mapping) or not all(
             isinstance(n, (int, float)) and n > 0 for n in points.values()
         ):
             raise self.refused(
-                ("ask", "points"), f"points = {{ theta3 = 2 }} weighs questions; found {points!r}"
+                ("ask", "points"),
+                Message("points = {{ theta3 = 2 }} weighs questions; found {points!r}", points=points),
             )
         return ask
 
@@ -632,7 +739,7 @@ class _LinkageReader(TomlReader):
         loads = [loads] if isinstance(loads, Mapping) else loads
         form = 'torque = { load = { on = "4", moment = "20 N*m" } }, or { on = "B", force = "100 N", angle = "180 deg" }'
         if not isinstance(loads, list) or not loads or not all(isinstance(each, Mapping) for each in loads):
-            raise self.refused(at, f"{form}; found {torque!r}")
+            raise self.refused(at, Message("{form}; found {torque!r}", form=form, torque=torque))
         results = []
         for load in loads:
             self.only(load, ("on", "moment", "force", "angle"), at, "load")
@@ -641,7 +748,12 @@ class _LinkageReader(TomlReader):
             known = bodies if "moment" in load else points
             if ("moment" in load) == ("force" in load) or on not in known:
                 raise self.refused(
-                    at, f"a moment acts on a body, a force at a point: {form}; found {dict(load)!r}"
+                    at,
+                    Message(
+                        "a moment acts on a body, a force at a point: {form}; found {found!r}",
+                        form=form,
+                        found=dict(load),
+                    ),
                 )
             results.append(
                 LoadEntry(
@@ -669,34 +781,56 @@ class _LinkageReader(TomlReader):
             points = ", ".join(linkage.bodies[name].points)
             yield self.refused(
                 ("bodies", name),
-                f"body {name} is in the air: it shares none of its points {points} with another body, and does not slide",
+                Message(
+                    "body {name} is in the air: it shares none of its points {points} with another body, and does not slide",
+                    name=name,
+                    points=points,
+                ),
             )
         for name, joints in hold.items():
             if len(joints) < 2 and name != linkage.driver and name not in geared:
                 yield self.refused(
                     ("bodies", name),
-                    f"body {name} hangs on {joints[0]} alone; a second point that it shares, or a slide, holds it",
+                    Message(
+                        "body {name} hangs on {value} alone; a second point that it shares, or a slide, holds it",
+                        name=name,
+                        value=joints[0],
+                    ),
                 )
         crank = linkage.bodies[linkage.driver]
         if crank.at not in linkage.ground:
             yield self.refused(
                 ("bodies", crank.name),
-                f"the driven body {crank.name} turns about a point of the ground; {crank.at} is none",
+                Message(
+                    "the driven body {name} turns about a point of the ground; {at} is none",
+                    name=crank.name,
+                    at=crank.at,
+                ),
             )
         if linkage.mobility != 1:
             pins = sum(len(b) - 1 for b in linkage.pins.values())
             count = f"3 × {len(linkage.bodies)} bodies, less 2 × {pins + len(linkage.slides)} pins and slides"
             count += f", less {len(linkage.gears)} gears" if linkage.gears else ""
-            does = "nothing moves" if linkage.mobility < 1 else "one driver does not settle it"
+            does = (
+                Message("nothing moves") if linkage.mobility < 1 else Message("one driver does not settle it")
+            )
             yield self.refused(
                 ("bodies",),
-                f"the mechanism has {linkage.mobility} degrees of freedom ({count}), a driver moves 1: {does}",
+                Message(
+                    "the mechanism has {mobility} degrees of freedom ({count}), a driver moves 1: {does}",
+                    mobility=linkage.mobility,
+                    count=count,
+                    does=does,
+                ),
             )
         for name, entry in linkage.assembly.items():
             for point in (name, entry.start, entry.end):
                 if point and point not in linkage.points:
                     yield self.refused(
-                        ("assembly", name), f"no point {point!r}{nearest(point, linkage.points)}"
+                        ("assembly", name),
+                        Message(
+                            "no point {point!r}{found}", point=point, found=nearest(point, linkage.points)
+                        ),
                     )
 
 

@@ -1,4 +1,4 @@
-"""What a mechanism's file asks: parts of the exercise, the quantities behind them, their usual mistakes."""
+"""Questions of a mechanism's file: parts of the exercise, the quantities behind them, their usual mistakes."""
 
 from __future__ import annotations
 
@@ -11,12 +11,13 @@ from coursework.errors import nearest
 from coursework.linkages.formulas import FormulaWriter, UsualMistake, over
 from coursework.linkages.linkage_file import GROUND
 from coursework.linkages.terms import Heading, Plane, Sum
+from coursework.messages import Message
 
 _CENTRE = re.compile(r"I(\d+|[a-z][a-z0-9]*?)_?(\d+|[a-z][a-z0-9]*)\Z")
 
 
 @dataclass(frozen=True)
-class Question:
+class LinkageQuestion:
     """Part of the exercise: its fields as code, and the sentence that asks it with its words."""
 
     name: str
@@ -42,7 +43,7 @@ class QuestionWriter:
 
     def __init__(self, formulas: FormulaWriter) -> None:
         self.formulas, self.linkage = formulas, formulas.linkage
-        self.questions: list[Question] = []
+        self.questions: list[LinkageQuestion] = []
         self.mistakes: list[UsualMistake] = list(formulas.mistakes)
         self.polygons: list[str] = []
         writers: dict[str, Callable[[Any], None]] = {
@@ -65,16 +66,19 @@ class QuestionWriter:
         known = {q.name for q in self.questions}
         for name, points in self.linkage.ask.get("points", {}).items():
             if name not in known:
-                raise self.linkage.refused(("ask", "points"), f"no question {name!r}{nearest(name, known)}")
+                raise self.linkage.refused(
+                    ("ask", "points"),
+                    Message("no question {name!r}{found}", name=name, found=nearest(name, known)),
+                )
             for number, question in enumerate(self.questions):
                 if question.name == name:
                     fields = {**question.fields, "points": f"{points:g}"}
-                    self.questions[number] = Question(name, fields, question.key, question.words)
+                    self.questions[number] = LinkageQuestion(name, fields, question.key, question.words)
 
     def _ask(self, name: str, key: str, words: Mapping[str, str] | None = None, **fields: str) -> None:
         if any(q.name == name for q in self.questions):
-            raise self.linkage.refused(("ask",), f"{name} is asked twice")
-        self.questions.append(Question(name, fields, key, words or {}))
+            raise self.linkage.refused(("ask",), Message("{name} is asked twice", name=name))
+        self.questions.append(LinkageQuestion(name, fields, key, words or {}))
 
     # ----------------------------------------------------------------- structure
 
@@ -119,7 +123,8 @@ class QuestionWriter:
     def _class(self, _: Any) -> None:
         if self.linkage.gears:
             raise self.linkage.refused(
-                ("ask", "class"), "Assour groups have pins and slides alone; this mechanism has gears"
+                ("ask", "class"),
+                Message("Assour groups have pins and slides alone; this mechanism has gears"),
             )
         names = ("I", "II", "III", "IV", "V", "VI")
         rank = names[self.formulas.rank - 1]
@@ -220,7 +225,12 @@ class QuestionWriter:
         if not linkage.speed:
             speed = linkage.angle.replace("theta", "omega", 1)
             raise linkage.refused(
-                ("ask", key), f'{key} need the speed of the driver: [given], then {speed} = "12 rad/s"'
+                ("ask", key),
+                Message(
+                    '{key} need the speed of the driver: [given], then {speed} = "12 rad/s"',
+                    key=key,
+                    speed=speed,
+                ),
             )
 
     @property
@@ -255,7 +265,13 @@ class QuestionWriter:
     def _unknown(self, name: str, at: tuple[str, str], able: Any) -> None:
         listed = [n for n in able if not n.startswith("_")]
         raise self.linkage.refused(
-            at, f"no quantity {name!r}{nearest(name, listed)}; there are {', '.join(listed)}"
+            at,
+            Message(
+                "no quantity {name!r}{found}; there are {found_2}",
+                name=name,
+                found=nearest(name, listed),
+                found_2=", ".join(listed),
+            ),
         )
 
     # --------------------------------------------------------- centres and forces
@@ -272,7 +288,8 @@ class QuestionWriter:
             )  # fmt: skip
             if match is None or pair is None or pair[0] == pair[1]:
                 raise self.linkage.refused(
-                    at, f"an instant centre is I13: two bodies, 1 the ground; found {name!r}"
+                    at,
+                    Message("an instant centre is I13: two bodies, 1 the ground; found {name!r}", name=name),
                 )
             self._centre(name, *pair)
 
@@ -289,7 +306,12 @@ class QuestionWriter:
             if rates[0] == rates[1]:
                 raise self.linkage.refused(
                     ("ask", "instant_centres"),
-                    f"{name} is at infinity in every position: bodies {words['i']} and {words['j']} are turned alike",
+                    Message(
+                        "{name} is at infinity in every position: bodies {value} and {value_2} are turned alike",
+                        name=name,
+                        value=words["i"],
+                        value_2=words["j"],
+                    ),
                 )
             moving = [b for b in (first, second) if b != GROUND]
             if len(moving) == 1:
@@ -338,7 +360,11 @@ class QuestionWriter:
         if body not in turning:
             raise linkage.refused(
                 ("ask", "advantage"),
-                f"the advantage is that of a body that turns: {', '.join(turning)}; found {value!r}",
+                Message(
+                    "the advantage is that of a body that turns: {found}; found {value!r}",
+                    found=", ".join(turning),
+                    value=value,
+                ),
             )
         words = {"body": body, "driver": linkage.driver}
         formulas.write(
@@ -380,7 +406,8 @@ class QuestionWriter:
         for name in names:
             if name not in ("velocity", "acceleration"):
                 raise self.linkage.refused(
-                    ("ask", "polygon"), f"a polygon is of 'velocity' or 'acceleration'; found {name!r}"
+                    ("ask", "polygon"),
+                    Message("a polygon is of 'velocity' or 'acceleration'; found {name!r}", name=name),
                 )
         self._needs_speed("polygon")
         self.polygons = list(dict.fromkeys(names))

@@ -11,9 +11,9 @@ from pathlib import Path
 from typing import Any
 
 from coursework.errors import BadCourse
-from coursework.linkages.expressions import Expression
+from coursework.linkages.expressions import QuantityExpression
 from coursework.linkages.formulas import FormulaWriter
-from coursework.linkages.groups import Dyad, LargeGroup, Wheel
+from coursework.linkages.groups import Dyad, HigherGroup, Wheel
 from coursework.linkages.linkage_file import GROUND, Place, SlideEntry
 from coursework.linkages.questions import QuestionWriter
 from coursework.quantities.formula_latex import PrintedName, tree_latex
@@ -51,7 +51,7 @@ class SentenceWriter:
         self.formulas, self.linkage, self.lang = formulas, formulas.linkage, lang
         self.tables = sentences(lang)
 
-    def say(self, table: str, key: str, words: Mapping[str, str] | None = None) -> str:
+    def sentence(self, table: str, key: str, words: Mapping[str, str] | None = None) -> str:
         """Return a sentence with its words in place."""
         texts = self.tables[table]
         known = self._words(words or {})
@@ -102,7 +102,7 @@ class SentenceWriter:
         """Return whether another body slides on a body."""
         return any(s.on == name for s in self.linkage.slides.values())
 
-    def latex(self, expression: Expression) -> str:
+    def latex(self, expression: QuantityExpression) -> str:
         """Return an expression in LaTeX; a number alone as it is printed."""
         shown = {
             n: PrintedName(self.formulas.symbol(n), False, "angle" if self._is_angle(n) else "")
@@ -114,7 +114,7 @@ class SentenceWriter:
         entry = self.linkage.given.get(name)
         return entry is not None and entry.unit == "deg"
 
-    def degrees(self, expression: Expression) -> str:
+    def degrees(self, expression: QuantityExpression) -> str:
         """Return a direction in LaTeX."""
         return rf"{self.latex(expression)}^{{\circ}}" if expression.is_number else self.latex(expression)
 
@@ -134,8 +134,8 @@ def _frame_point(writer: SentenceWriter, point: str, place: Place) -> str:
     """Return a point with its place in a frame."""
     if place.radius is not None:
         words = {"B": point, "r": writer.latex(place.radius), "angle": writer.degrees(place.angle)}
-        return writer.say("statement", "frame_point_polar", words)
-    return writer.say(
+        return writer.sentence("statement", "frame_point_polar", words)
+    return writer.sentence(
         "statement", "frame_point", {"B": point, "x": writer.latex(place.x), "y": writer.latex(place.y)}
     )
 
@@ -164,15 +164,15 @@ def exercise_text(formulas: FormulaWriter, questions: QuestionWriter, lang: str)
         if entry.is_drawn:
             key = "mode" if entry.end else "mode_slide"
             words = {"B": point, "P": entry.start, "Q": entry.end}
-            pieces.append(f"## mode_{point}\n{writer.say('statement', key, words)}")
+            pieces.append(f"## mode_{point}\n{writer.sentence('statement', key, words)}")
     for question in questions.questions:
         own = {"own": formulas.symbol(question.name)}
         pieces.append(
-            f"## {question.name}\n{writer.say('question', question.key, {**question.words, **own})}"
+            f"## {question.name}\n{writer.sentence('question', question.key, {**question.words, **own})}"
         )
     joints = [p for p in linkage.points if p in linkage.pins]
     pieces.append(
-        f"## figure\n{writer.say('statement', 'figure', {'points': ', '.join(joints), 'name': linkage.angle})}"
+        f"## figure\n{writer.sentence('statement', 'figure', {'points': ', '.join(joints), 'name': linkage.angle})}"
     )
     return "\n\n".join(pieces) + "\n"
 
@@ -183,16 +183,16 @@ def _title(titles: Mapping[str, str], lang: str, name: str) -> str:
 
 def _statement(writer: SentenceWriter) -> str:
     formulas, linkage = writer.formulas, writer.linkage
-    say = writer.say
+    sentence = writer.sentence
     fixed = [_frame_point(writer, p, place) for p, place in linkage.ground.items()]
-    bodies = [say("statement", "frame", {"points": writer.listed(fixed)})]
+    bodies = [sentence("statement", "frame", {"points": writer.listed(fixed)})]
     bodies += [_body(writer, name) for name in formulas.order if name != GROUND]
     joints = [_slide(writer, slide) for slide in linkage.slides.values()]
     for gear in linkage.gears:
-        inner = say("statement", "gear_inner") if gear.inner else ""
+        inner = sentence("statement", "gear_inner") if gear.inner else ""
         words = {"i": _number(gear.first), "j": _number(gear.second), "inner": inner}
         words |= {"r": writer.latex(gear.radii[0]), "R": writer.latex(gear.radii[1])}
-        joints.append(say("statement", "gear", words))
+        joints.append(sentence("statement", "gear", words))
     assembled = []
     for point, entry in formulas.modes.items():
         if not entry.is_drawn:
@@ -202,23 +202,25 @@ def _statement(writer: SentenceWriter) -> str:
             )
             key = f"{entry.ways[0]}_guide" if guide else entry.ways[0]
             if point in linkage.assembly or not guide:
-                assembled.append(say("statement", key, {"B": point, "P": entry.start, "Q": entry.end}))
-    if any(isinstance(g, LargeGroup) for g in formulas.groups):
-        assembled.append(say("statement", "near"))
+                assembled.append(sentence("statement", key, {"B": point, "P": entry.start, "Q": entry.end}))
+    if any(isinstance(g, HigherGroup) for g in formulas.groups):
+        assembled.append(sentence("statement", "near"))
     directions = _directions(writer)
     motion = []
     if directions:
-        motion.append(say("statement", "directions", {"list": writer.listed(directions)}))
+        motion.append(sentence("statement", "directions", {"list": writer.listed(directions)}))
     if linkage.speed:
         words = {
             "omega": formulas.symbol(linkage.speed),
             "alpha": formulas.symbol(linkage.acceleration) if linkage.acceleration else "",
         }
-        motion.append(say("statement", "varying" if linkage.acceleration else "constant", words))
+        motion.append(sentence("statement", "varying" if linkage.acceleration else "constant", words))
     for load in linkage.loads:
         if load.moment is not None:
             motion.append(
-                say("statement", "moment", {"value": _with_unit(writer, load.moment, "N*m"), "name": load.on})
+                sentence(
+                    "statement", "moment", {"value": _with_unit(writer, load.moment, "N*m"), "name": load.on}
+                )
             )
         elif load.force is not None:
             words = {
@@ -226,13 +228,13 @@ def _statement(writer: SentenceWriter) -> str:
                 "B": load.on,
                 "angle": writer.degrees(load.angle),
             }
-            motion.append(say("statement", "force", words))
+            motion.append(sentence("statement", "force", words))
     if linkage.loads:
-        motion.append(say("statement", "forces"))
+        motion.append(sentence("statement", "forces"))
     return "\n\n".join(" ".join(part) for part in (bodies, joints, assembled, motion) if part)
 
 
-def _with_unit(writer: SentenceWriter, expression: Expression, unit: str) -> str:
+def _with_unit(writer: SentenceWriter, expression: QuantityExpression, unit: str) -> str:
     if not expression.is_number:
         return writer.latex(expression)
     latex = {"N*m": r"\mathrm{N\,m}", "N": r"\mathrm{N}"}[unit]
@@ -250,15 +252,15 @@ def _body(writer: SentenceWriter, name: str) -> str:
     others = [p for p in points if p != start]
     if not others:
         kind = "guide" if writer.is_guide(name) else "block"
-        return writer.say("statement", kind, {"B": start, "name": name})
+        return writer.sentence("statement", kind, {"B": start, "name": name})
     words = {"P": start, "name": name, "angle": formulas.symbol(formulas.turns[name])}
     far = points[others[0]]
     if len(others) == 1 and far.radius is None and far.y.is_zero:
         words |= {"B": others[0], "length": writer.latex(far.x)}
-        return writer.say("statement", "crank" if name == linkage.driver else "bar", words)
+        return writer.sentence("statement", "crank" if name == linkage.driver else "bar", words)
     places = [_frame_point(writer, p, points[p]) for p in others]
     words |= {"points": "".join(map(point_latex, [start, *others])), "places": writer.listed(places)}
-    return writer.say("statement", "plate_driven" if name == linkage.driver else "plate", words)
+    return writer.sentence("statement", "plate_driven" if name == linkage.driver else "plate", words)
 
 
 def _slide(writer: SentenceWriter, slide: SlideEntry) -> str:
@@ -266,7 +268,7 @@ def _slide(writer: SentenceWriter, slide: SlideEntry) -> str:
         through = f"${point_latex(slide.through_name)}$"
     else:
         words = {"x": writer.latex(slide.through.x), "y": writer.latex(slide.through.y)}
-        through = writer.say("statement", "through_place", words)
+        through = writer.sentence("statement", "through_place", words)
     words = {
         "B": slide.at,
         "name": slide.of,
@@ -275,13 +277,13 @@ def _slide(writer: SentenceWriter, slide: SlideEntry) -> str:
         "along": writer.degrees(slide.along),
     }
     if slide.on == GROUND:
-        return writer.say("statement", "slide_ground", words)
+        return writer.sentence("statement", "slide_ground", words)
     turned = (
         ""
         if slide.along.is_zero
-        else writer.say("statement", "slide_turned", {"along": writer.degrees(slide.along)})
+        else writer.sentence("statement", "slide_turned", {"along": writer.degrees(slide.along)})
     )
-    return writer.say("statement", "slide_body", {**words, "guide": slide.on, "turned": turned})
+    return writer.sentence("statement", "slide_body", {**words, "guide": slide.on, "turned": turned})
 
 
 def _directions(writer: SentenceWriter) -> list[str]:
@@ -300,9 +302,9 @@ def _directions(writer: SentenceWriter) -> list[str]:
         ]
         words = {"symbol": formulas.symbol(turn), "name": name}
         if start and ahead:
-            results[turn] = writer.say("statement", "direction", {**words, "P": start, "B": ahead[0]})
+            results[turn] = writer.sentence("statement", "direction", {**words, "P": start, "B": ahead[0]})
         else:
-            results[turn] = writer.say("statement", "direction_axis", words)
+            results[turn] = writer.sentence("statement", "direction_axis", words)
     return list(results.values())
 
 
@@ -327,15 +329,17 @@ def solution_text(formulas: FormulaWriter, questions: QuestionWriter, lang: str)
     groups = [_group(writer, group) for group in formulas.groups]
     title = _title(formulas.linkage.title, lang, formulas.linkage.name)
     pieces = [
-        f"# {writer.say('solution', 'title', {'title': title})}",
-        writer.say("solution", "opening", {"groups": writer.listed(groups)}) if groups else "",
+        f"# {writer.sentence('solution', 'title', {'title': title})}",
+        writer.sentence("solution", "opening", {"groups": writer.listed(groups)}) if groups else "",
     ]
     for quantity in formulas.quantities.values():
         if quantity.step:
             pieces.append(f"## {quantity.name}\n{_step(writer, quantity.step, quantity.words)}")
     for mistake in questions.mistakes:
         if all(t in formulas.quantities for t in mistake.targets):
-            pieces.append(f"## mistake {mistake.name}\n{writer.say('mistake', mistake.key, mistake.words)}")
+            pieces.append(
+                f"## mistake {mistake.name}\n{writer.sentence('mistake', mistake.key, mistake.words)}"
+            )
     return "\n\n".join(p for p in pieces if p) + "\n"
 
 
@@ -343,19 +347,19 @@ def _step(writer: SentenceWriter, step: str, words: Mapping[str, str]) -> str:
     """Return the sentence of a step: its own, else the one without what a moving guide adds; a second component is likewise."""
     for key in (step, step.removesuffix("_moved")):
         if writer.has("step", key):
-            return writer.say("step", key, words)
+            return writer.sentence("step", key, words)
     if step.endswith("_y") and writer.has("step", f"{step[:-2]}_x"):
-        return writer.say("step", "likewise", words)
+        return writer.sentence("step", "likewise", words)
     raise KeyError(step)
 
 
 def _group(writer: SentenceWriter, group: Any) -> str:
     if isinstance(group, Dyad):
         return (
-            writer.say("solution", "dyad", {"kind": group.kind})
+            writer.sentence("solution", "dyad", {"kind": group.kind})
             .replace("<p>", group.p)
             .replace("<q>", group.q)
         )
     if isinstance(group, Wheel):
         return writer.tables["solution"]["wheel"].replace("<body>", group.body)
-    return writer.say("solution", "large", {"bodies": ", ".join(group.bodies)})
+    return writer.sentence("solution", "large", {"bodies": ", ".join(group.bodies)})

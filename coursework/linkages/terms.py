@@ -50,7 +50,7 @@ class Sum:
     @property
     def code(self) -> str:
         """The sum as code."""
-        pieces = []
+        pieces: list[str] = []
         for sign, factors in sorted(self.products, key=lambda p: p[0] < 0) if self.products else ():
             text = " * ".join(sorted(factors, key=lambda f: "(" in f)) or "1"
             pieces.append(

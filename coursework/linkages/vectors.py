@@ -8,6 +8,7 @@ from coursework.linkages.formulas import FormulaWriter
 from coursework.linkages.groups import Dyad
 from coursework.linkages.linkage_file import GROUND, SlideEntry
 from coursework.linkages.terms import Heading
+from coursework.messages import Message
 
 
 class PolygonWriter:
@@ -40,7 +41,8 @@ class PolygonWriter:
         for group in self.formulas.groups:
             if not isinstance(group, Dyad) or group.kind not in ("RRR", "RRP"):
                 raise self.linkage.refused(
-                    ("ask", "polygon"), "polygons are drawn of pairs of bars, and of sliders on fixed guides"
+                    ("ask", "polygon"),
+                    Message("polygons are drawn of pairs of bars, and of sliders on fixed guides"),
                 )
             inner, start = str(group.inner), str(group.outer_p)
             if isinstance(group.outer_q, SlideEntry):
@@ -95,7 +97,7 @@ class PolygonWriter:
     def _slider(self, group: Dyad, slide: SlideEntry, kind: str) -> list[str]:
         if slide.on != GROUND:
             raise self.linkage.refused(
-                ("ask", "polygon"), "polygons are drawn of sliders on fixed guides; this guide moves"
+                ("ask", "polygon"), Message("polygons are drawn of sliders on fixed guides; this guide moves")
             )
         B = str(group.inner)
         way = f"polar(1, {Heading.of(slide.along.code).code})"

@@ -20,6 +20,7 @@ from coursework.errors import (
     WrongUnit,
     WrongValue,
 )
+from coursework.linkages.linkage_file import ASKED
 from coursework.rendering.renderer import renderer_of
 from coursework.scenes.effects import EFFECTS
 
@@ -72,8 +73,8 @@ def test_exercises_never_import_solutions(course):
 
 
 def test_no_module_of_the_engine_names_an_exercise(course):
-    # A scene's effect may be called as an exercise is.
-    named = re.compile(rf"""["']({"|".join(set(course.names) - set(EFFECTS))})["']""")
+    # A scene's effect, or a question of a mechanism's file, may be called as an exercise is.
+    named = re.compile(rf"""["']({"|".join(set(course.names) - {*EFFECTS, *ASKED})})["']""")
     for path in PACKAGE.rglob("*.py"):
         if "_course" in path.parts or path == PACKAGE / "__init__.py":
             continue  # the course itself, and the docstring that shows one of its exercises

@@ -65,7 +65,7 @@ def test_rates_and_accelerations_are_the_differences_of_positions(name):
     assert checked >= 2
 
 
-@each_row("name", [n for n in NAMES if n in ("toggle", "offset_slider", "atkinson_engine")])
+@each_row("name", [n for n in NAMES if n in ("toggle", "slider_crank", "atkinson_engine")])
 def test_torques_do_the_work_of_the_load(name):
     """A small turn of the driver: its torque times the angle, and the load times the way of its point or body, add up to nothing."""
     exercise = course()[name]
@@ -78,7 +78,7 @@ def test_torques_do_the_work_of_the_load(name):
         work = given["M4"] * np.radians(np.ptp(np.sort(exercise.solve(only="theta4", **ends)["theta4"])))
         work *= np.sign(np.diff(exercise.solve(only="theta4", **ends)["theta4"]))[0]
     else:
-        point = {"offset_slider": "xB", "atkinson_engine": "xE"}[name]
+        point = {"slider_crank": "xB", "atkinson_engine": "xE"}[name]
         work = given["F"] * np.diff(exercise.solve(only=point, **ends)[point])[0] / 1000
     assert torque * turn == pytest.approx(-work, rel=1e-5)
 
@@ -100,19 +100,19 @@ def _both(name, other, arguments, answers, renamed=None, count=300):
     "name, other, arguments, answers, renamed",
     [
         (
-            "four_bar_file", "four_bar_motion", ("r1", "r2", "r3", "r4", "theta2", "omega2", "alpha2"),
+            "four_bar", "four_bar_motion", ("r1", "r2", "r3", "r4", "theta2", "omega2", "alpha2"),
             {n: n for n in ("theta3", "theta4", "omega3", "omega4", "alpha3", "alpha4")}, {"mode": "mode_B"},
         ),
         (
-            "offset_slider", "slider_crank", ("r2", "r3", "e", "theta2", "omega2", "alpha2"),
+            "slider_crank", "slider_crank", ("r2", "r3", "e", "theta2", "omega2", "alpha2"),
             {"theta3": "theta3", "x": "r1", "omega3": "omega3", "x_dot": "r1_dot", "alpha3": "alpha3", "x_ddot": "r1_ddot"}, {},
         ),
         (
-            "slotted_file", "slotted_mechanism", ("r1", "r2", "theta2", "omega2", "alpha2"),
+            "slotted_lever", "slotted_mechanism", ("r1", "r2", "theta2", "omega2", "alpha2"),
             {"theta4": "theta4", "r4": "rA", "omega4": "omega4", "r4_dot": "rA_dot", "alpha4": "alpha4", "r4_ddot": "rA_ddot"}, {},
         ),
         (
-            "two_loops_file", "two_loop_linkage",
+            "two_loops", "two_loop_linkage",
             ("xC", "yC", "xF", "yF", "r2", "r3", "r4", "r5", "beta", "r6", "r7", "theta2", "omega2"),
             {f"{s}{k}": f"{s}{k}" for s in ("theta", "omega", "alpha") for k in (3, 4, 6, 7)},
             {"mode_1": "mode_B", "mode_2": "mode_E"},
@@ -146,7 +146,7 @@ def test_a_group_of_class_three_is_followed_over_the_whole_turn():
 def test_a_group_that_does_not_close_is_nan_there_and_says_so_alone():
     from coursework.errors import CannotAssemble
 
-    exercise = course()["four_bar_file"]
+    exercise = course()["four_bar"]
     given = {
         "r1": 200,
         "r2": 150,

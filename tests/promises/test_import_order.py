@@ -9,7 +9,7 @@ from tables import each_row
 #: From the ground up.
 ROOMS = (
     "messages errors degrees system language kinematics markup figures structure mechanics parsing quantities kinds model solution "
-    "course marking sheets scenes rendering accuracy issuing gradebook selfstudy scanning database platforms nbgrader authoring api site __init__ cli __main__"
+    "linkages course marking sheets scenes rendering accuracy issuing gradebook selfstudy scanning database platforms nbgrader authoring api site __init__ cli __main__"
 ).split()
 
 
