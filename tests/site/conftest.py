@@ -1,7 +1,11 @@
+import pickle
+
 import pytest
 from argon2 import PasswordHasher
 from site_people import Class
 
+from coursework.errors import CourseworkError
+from coursework.site.frame import budgets
 from coursework.site.people import passwords
 
 
@@ -18,3 +22,24 @@ def strong_hasher():
         patch.setattr(passwords, "_HASHER", PasswordHasher(time_cost=1, memory_cost=16, parallelism=1))
         passwords._of_nobody.cache_clear()
         yield strong
+
+
+@pytest.fixture(autouse=True)
+def read_here(request, monkeypatch):
+    """Uploads are read in this process, sent to and fro as to another, which takes longer to begin than to read; tests of whole
+    commands, and those that ask for ``own_process``, read as a server does."""
+    if "own_process" not in request.fixturenames and not request.node.get_closest_marker("e2e"):
+        monkeypatch.setattr(budgets, "confined", _sent)
+
+
+@pytest.fixture
+def own_process():
+    """Read uploads in a process of limited means, as on a server."""
+
+
+def _sent(means, function, *arguments):
+    function, arguments = pickle.loads(pickle.dumps((function, arguments)))
+    try:
+        return pickle.loads(pickle.dumps(function(*arguments)))
+    except CourseworkError as fault:
+        raise pickle.loads(pickle.dumps(fault)) from None

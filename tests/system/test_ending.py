@@ -7,7 +7,10 @@ import signal
 import ending
 import pytest
 
-pytestmark = pytest.mark.skipif(not ending.HAS_SESSIONS, reason="processes of a session are counted on Linux")
+pytestmark = [
+    pytest.mark.skipif(not ending.HAS_SESSIONS, reason="processes of a session are counted on Linux"),
+    pytest.mark.e2e,
+]
 
 WRITES = """
 import sys, time
@@ -223,7 +226,6 @@ if __name__ == "__main__":
 """
 
 
-@pytest.mark.e2e
 def test_half_an_answer_is_not_waited_for(tmp_path):
     process = ending.begun(tmp_path, script=ANSWERS)
     assert ending.ended(process) == ("", "")
