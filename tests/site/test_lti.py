@@ -27,7 +27,7 @@ from coursework.database.assignments import issued_of
 from coursework.database.audit import noted
 from coursework.database.decisions import GIVEN, decide
 from coursework.database.publication import CHARGE, NEVER
-from coursework.database.tables import account, delivery, identity, person
+from coursework.database.tables import account, delivery, drawing, identity, person
 from coursework.errors import BadInput
 from coursework.gradebook.decisions import Decision
 from coursework.messages import messages_in
@@ -398,3 +398,25 @@ def test_a_file_of_an_earlier_version_is_named_with_what_to_do(tmp_path, capsys)
         said = capsys.readouterr().err
         assert told in said
         assert "answers.csv" in said
+
+
+def test_a_paper_in_a_frame_has_a_surface_whose_drawing_is_kept_with_what_is_handed_in(linked):
+    visitor, page, path = linked.enter(custom={"exercise": "two_circles", "tries": "2"})
+    assert "data-surface" in page.text
+    assert re.findall(r'<script src="/static/([a-z]+)\.js', page.text) == ["cells", "drawing"]
+    assert "script-src 'self'" in page.headers["content-security-policy"]
+    assert "script-src 'self'" in html.unescape(page.text)
+    drawing_ = '{"v": 1, "items": [{"k": "point", "id": 1, "x": 12.5, "y": 30, "n": "p"}], "scale": null}'
+    answers = {"e1-kl": "2", "e1-p": "(12.5 ; 30)", "e1-drawing": drawing_, "_as_it_is": "1"}
+    assert visitor.hand_in(path, page, answers).status_code == 303
+    assert [row.text for row in linked.one(drawing.c.text)] == [drawing_]
+    again = visitor.browser.get(path, params={"again": "1"})
+    assert html.escape(drawing_, quote=False).replace('"', "&quot;") in again.text.replace("&#34;", "&quot;")
+    broken = visitor.hand_in(
+        path, again, {**answers, "e1-drawing": "</textarea><script>alert(1)</script>", "e1-kl": "3"}
+    )
+    assert broken.status_code == 303
+    assert len(linked.one(drawing.c.text)) == 1
+    assert "<script>alert" not in visitor.browser.get(path, params={"again": "1"}).text
+    _, plain, _ = linked.enter(sub="eve", name="Eve")
+    assert "script-src 'none'" in html.unescape(plain.text)

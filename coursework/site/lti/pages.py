@@ -11,6 +11,7 @@ from coursework.language.words import words
 from coursework.rendering import papers
 from coursework.rendering.environment import render
 from coursework.rendering.html import environment_of, script_digest
+from coursework.rendering.surface import surface
 from coursework.sheets.paper import FeedbackPaper, Paper
 from coursework.site.frame.pages import SitePages
 
@@ -55,7 +56,10 @@ class LTIPages(SitePages):
 
     def _page(self, template: str, paper: Paper | FeedbackPaper, form: SheetForm) -> str:
         env = environment_of(self._folder.template_folders, paper.heading.lang)
-        files = [{"filled": form.filled}] * len(papers.sheets_of(paper))
+        draws = isinstance(paper, Paper) and any(surface(handout) for handout in paper.handouts)
+        files = [{"filled": form.filled, "draws": draws}] * len(papers.sheets_of(paper))
         names = papers.context(paper, "html.j2", partial(render, env), files)
-        more = {"image": papers.image, "form": form, "filled": form.filled, "keeping": ""}
+        more = {
+            "image": papers.image, "form": form, "filled": form.filled, "keeping": "", "draws": draws, "file": self.file,
+        }  # fmt: skip
         return self.page(template, paper.heading.lang, {**names, **more})

@@ -13,6 +13,8 @@ from typing import Any
 from starlette.responses import HTMLResponse, RedirectResponse, Response
 
 from coursework.database.assignments import issued_of
+from coursework.database.drafts import DraftChange, drafts, save
+from coursework.database.people import lock_person
 from coursework.database.publication import Phase, Publication, published, student_assignments
 from coursework.database.submissions import rows_of
 from coursework.errors import BadInput
@@ -46,7 +48,7 @@ from coursework.site.papers.assignments import feedback_from
 from coursework.site.papers.feedback import feedback_of
 from coursework.site.papers.receipts import pending_marking
 from coursework.site.papers.student_paper import StudentPaper, read_lines
-from coursework.site.papers.submission import mark, rows_for, submit
+from coursework.site.papers.submission import mark, rows_for, sheet_of, submit
 from coursework.site.publication.publishing import definition_of, listed_assignments, preview_paper
 
 FROM_A_PLATFORM = "site: from a platform"
@@ -113,6 +115,10 @@ class SiteHost:
         if not state.may_hand_in:
             raise HTTPException("closed", 409)
         texts = self._handed_in(state, paper) if state.done else {}
+        if state.done and paper.drawn:
+            with self._site.store.reading() as connection:
+                kept = drafts(connection, site_request.user.id, sheet_of(state.assignment, paper))
+            texts |= {name: kept[name].text for name in paper.drawn if name in kept}
         return HTMLResponse(self._sheet(request, state, paper, texts))
 
     # ------------------------------------------------------------------- a student
@@ -267,14 +273,32 @@ class SiteHost:
         texts, attempt = paper.texts(site_request.form), _number(form)
         if attempt <= len(state.done):
             return RedirectResponse(request.home, 303)  # repeated form
+        drawings = paper.drawing_texts(site_request.form)
         back = self._doubts(request, paper, texts, form)
         if back:
-            return HTMLResponse(self._sheet(request, state, paper, texts, **back), 422)
+            return HTMLResponse(self._sheet(request, state, paper, texts | drawings, **back), 422)
+        self._save_drawings(site_request, state, paper, drawings)
         number, person_id = state.assignment.id, site_request.user.id
         received_at = site_request.received_at
         submit(self._site, state.assignment, paper, person_id, texts, attempt, received_at, FROM_A_PLATFORM)
         self._queue_score(request.launch, person_id, number)
         return RedirectResponse(request.home, 303)
+
+    def _save_drawings(
+        self, request: SiteRequest, state: AssignmentState, paper: StudentPaper, drawings: Mapping[str, str]
+    ) -> None:
+        """Store what was drawn as drafts, from which a submission takes it."""
+        if not drawings or not state.may_hand_in:
+            return
+        person_id, sheet = request.user.id, sheet_of(state.assignment, paper)
+        with self._site.store.begin() as connection:
+            lock_person(connection, person_id)
+            stored = drafts(connection, person_id, sheet)
+            sent = {
+                name: DraftChange(text, stored[name].version if name in stored else 0)
+                for name, text in drawings.items()
+            }
+            save(connection, person_id, sheet, sent, request.received_at, stored)
 
     def _doubts(
         self, request: LTIRequest, paper: StudentPaper, texts: Mapping[str, str], form: FormData
