@@ -1,6 +1,7 @@
-"""A student's page in Chromium, as a telephone on a slow line has it: bytes cold and warm, first paint, taps to a marked answer, axe.
+"""A student's pages in Chromium, as a telephone on a slow line has them: bytes cold and warm, first paint, taps to a marked answer,
+a polygon constructed by touch, axe.
 
-    python benchmarks/student_page.py [EXERCISE]      slotted_mechanism; half a minute
+    python benchmarks/student_page.py [EXERCISE]      slotted_mechanism; a minute
 
 The line is emulated: 400 ms, 50 kB/s each way. It prints a Markdown table, which stands in docs/site.md.
 """
@@ -9,17 +10,24 @@ from __future__ import annotations
 
 import sys
 import tempfile
+import time
 from pathlib import Path
 from typing import Any
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "tests"))
 
+import constructions
 from site_browser import chromium, context_of, served
+from site_pencil import Draughtsman
 from site_people import ZOE, Class
 from site_practising import right_answer
 from timing import print_table
 
 LINE = {"offline": False, "latency": 400, "downloadThroughput": 50_000, "uploadThroughput": 50_000}
+DRAWN = "velocity_polygon"  #: with a surface to draw on
+SCRIPTED = (DRAWN, "acceleration_polygon", "two_circles", "havens_construction", "crank_shaper_drawn")
+#: Seconds of a tap that is aimed, and of a key (Card, Moran and Newell, 1983, rounded up).
+TAP, KEY = 2.0, 0.5
 PAINT = "performance.getEntriesByName('first-contentful-paint')[0].startTime"
 
 
@@ -45,6 +53,29 @@ class Measured:
         return self.bytes / 1000, self.page.evaluate(PAINT) / 1000
 
 
+def weighed(context: Any, place: str, called: str) -> tuple[Any, list[tuple[str, str]]]:
+    """Return the page, and its rows: kilobytes and first paint, cold and warm."""
+    measured, rows = Measured(context), []
+    for state, at in (("cold", place), ("warm", "")):
+        size, paint = measured.open(at or measured.page.url)
+        rows += [(f"{called}, {state}, kB", f"{size:.0f}"), ("first paint, s", f"{paint:.2f}")]
+    return measured.page, rows
+
+
+def constructed(desk: Any) -> list[tuple[str, str]]:
+    """Return the taps and keys of each construction by touch, seconds of the script, and those of a hand at a usual pace."""
+    rows = []
+    for exercise in SCRIPTED:
+        hand, begun = Draughtsman(desk, exercise), time.perf_counter()
+        getattr(constructions, exercise)(hand)
+        script = time.perf_counter() - begun
+        pace = TAP * hand.taps + KEY * hand.keys
+        told = f"{hand.taps} taps, {hand.keys} keys; {script:.0f} s by script, {pace:.0f} s at 2 s a tap"
+        rows.append((f"`{exercise}` drawn by touch", told))
+        hand.close()
+    return rows
+
+
 def findings(page: Any) -> int:
     """Return how many rules of axe a page breaks."""
     from axe_core_python.sync_playwright import Axe
@@ -62,12 +93,9 @@ def main(exercise: str) -> None:
         )  # the course is read
         # Bytes that a service worker asks for are counted nowhere.
         context = context_of(browser, class_, address, ZOE, service_workers="block")
-        measured = Measured(context)
-        cold, first = measured.open(f"{address}/practice/{exercise}")
-        warm, again = measured.open(measured.page.url)
-        rows += [("cold page, kB", f"{cold:.0f}"), ("first paint, s", f"{first:.2f}")]
-        rows += [("warm page, kB", f"{warm:.0f}"), ("first paint, s", f"{again:.2f}")]
-        page, taps = measured.page, 0
+        page, found = weighed(context, f"{address}/practice/{exercise}", "page")
+        rows += found
+        taps, begun = 0, time.perf_counter()
         name, seed = page.url.rsplit("/", 2)[1:]
         variant = class_.site.variant(name, int(seed), "en")
         part = next(part for part in variant.parts if part.sort.is_number)
@@ -78,7 +106,12 @@ def main(exercise: str) -> None:
                 page.keyboard.type(right_answer(variant, part))
         page.wait_for_selector(f"#told-a-{part.id} .right")
         rows.append(("taps from the open page to a marked number", str(taps)))
+        rows.append(("seconds of it by script, on that line", f"{time.perf_counter() - begun:.1f}"))
         context.close()
+        context = context_of(browser, class_, address, ZOE, service_workers="block")
+        rows += weighed(context, f"{address}/practice/{DRAWN}", "page to draw on")[1]
+        context.close()
+        rows += constructed((class_, address, browser))
         for scheme in ("light", "dark"):
             context = context_of(browser, class_, address, ZOE, color_scheme=scheme)
             page, found = context.new_page(), 0

@@ -322,7 +322,7 @@ def _html_reader(lang: str) -> MarkdownIt:
     reader.add_render_rule("heading_close", heading)
     # A table wider than a telephone scrolls in a box that a keyboard reaches.
     name = escape(words(lang)["sheet"]["table"])
-    opening = f'<div class="wide-table" tabindex="0" role="region" aria-label="{name}">\n<table>\n'
+    opening = f'<div class="wide-table" tabindex="0" role="group" aria-label="{name}">\n<table>\n'
     reader.add_render_rule("table_open", lambda *_: opening)
     reader.add_render_rule("table_close", lambda *_: "</table>\n</div>\n")
     return reader

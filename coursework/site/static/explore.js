@@ -13,7 +13,7 @@
 
   // The figure is another one after each change: what is held is remembered here.
   const near = 24;
-  let held = null;
+  let held = null, sent = 0;
   const figure = () => form.querySelector(".explored svg[data-crank]");
   function places() {
     const svg = figure(), [x, y, u, v] = (svg ? svg.dataset.crank : "").split(" ").map(Number);
@@ -22,7 +22,7 @@
   const heading = (pivot, x, y) => Math.atan2(pivot.y - y, x - pivot.x) * 180 / Math.PI;
   function handle() {
     const ends = places(), svg = figure();
-    if (!ends) return;
+    if (!ends || svg.querySelector(".handle")) return;
     const unit = svg.getScreenCTM().a, at = svg.dataset.crank.split(" ");
     for (const [name, r] of [["grip", 9], ["handle", near]]) {
       const ring = document.createElementNS("http://www.w3.org/2000/svg", "circle");
@@ -43,9 +43,26 @@
     const now = heading(ends[0], event.clientX, event.clientY), by = now - held;
     held = now;
     driver.value = ((+driver.value + by - 360 * Math.round(by / 360)) % 360 + 360) % 360;
-    driver.dispatchEvent(new Event("input", { bubbles: true }));
+    document.getElementById(driver.dataset.of).value = driver.value;
+    follow(now);
+    if (event.timeStamp - sent < 200) return; // a person may ask 400 times a minute
+    sent = event.timeStamp;
+    form.dispatchEvent(new Event("turned"));
   });
-  for (const end of ["pointerup", "pointercancel"]) form.addEventListener(end, () => { held = null; });
+  // The handle follows the finger at once, the figure as soon as it comes.
+  function follow(angle) {
+    const svg = figure(), [x, y, u, v] = svg.dataset.crank.split(" ").map(Number), arm = Math.hypot(u - x, v - y);
+    svg.querySelectorAll(".grip, .handle").forEach((ring) => {
+      ring.setAttribute("cx", x + arm * Math.cos(angle * Math.PI / 180));
+      ring.setAttribute("cy", y - arm * Math.sin(angle * Math.PI / 180));
+    });
+  }
+  for (const end of ["pointerup", "pointercancel"]) {
+    form.addEventListener(end, () => {
+      if (held !== null) driver.dispatchEvent(new Event("change", { bubbles: true }));
+      held = null;
+    });
+  }
   document.addEventListener("htmx:afterSettle", handle);
   handle();
 })();
