@@ -77,7 +77,6 @@ class CompiledLinkage:
         helpers = [q for q in self.formulas.transitive(wanted) if q.name not in self.linkage.given]
         chains = [f"{n} = {code}" for n, code in self.formulas.constants.items()]
         pieces = [
-            f'"""{self.linkage.name}: exercise."""\n',
             _IMPORTS,
             _EXERCISE_IMPORTS,
             *chains,
@@ -251,7 +250,6 @@ class CompiledLinkage:
             for name, loop in formulas.loops.items()
         )
         pieces = [
-            f'"""{self.linkage.name}: solution."""\n',
             _IMPORTS,
             _SOLUTION_IMPORTS,
             f"UNITS = {units!r}\nSYMBOLS = {symbols!r}",

@@ -3,20 +3,30 @@
 from __future__ import annotations
 
 import ast
+import math
+import operator
 import re
 from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass
 
+import numpy as np
+
+from coursework.degrees import atan2, cos, sin, sqrt, tan
 from coursework.errors import WrongUnit, WrongValue, nearest
 from coursework.messages import Message
 from coursework.parsing.units import Unit, convert, find_unit, parse_unit
 
 FUNCTIONS = ("sin", "cos", "tan", "sqrt", "abs", "atan2", "hypot", "min", "max")
+_ARGUMENTS = {"atan2": 2, "hypot": 2, "min": 2, "max": 2}  #: of functions that take more than one
+_MOST_POWER, _DEEPEST, _LARGEST = 9, 40, 1e12
 _IN_CODE = {"min": "np.minimum", "max": "np.maximum", "hypot": "np.hypot"}
 _LITERAL = re.compile(
     r"(?<![\w.])(\d+(?:\.\d+)?(?:[eE][+-]?\d+)?)\s*([A-Za-zµ°][A-Za-z°²³]*(?:[*/^][A-Za-z0-9²³]+)*)"
 )
 _OPERATORS: Mapping[type, str] = {ast.Add: "+", ast.Sub: "-", ast.Mult: "*", ast.Div: "/", ast.Pow: "**"}
+_ARITHMETIC: Mapping[type, Callable[[float, float], float]] = {
+    ast.Add: operator.add, ast.Sub: operator.sub, ast.Mult: operator.mul, ast.Div: operator.truediv, ast.Pow: math.pow,
+}  # fmt: skip
 _COMPARISONS: Mapping[type, str] = {ast.Lt: "<", ast.LtE: "<=", ast.Gt: ">", ast.GtE: ">="}
 
 
@@ -53,6 +63,34 @@ def _number(code: str) -> float | None:
         return None
 
 
+def _written(value: float) -> str:
+    """Return a number as code.
+
+    Raises
+    ------
+    WrongValue
+        It is too large, or no number.
+    """
+    try:
+        if abs(value) < _LARGEST:
+            return f"{float(value):.15g}"
+    except OverflowError:  # of a whole number
+        pass
+    raise WrongValue(Message("a number is too large"))
+
+
+def _value(code: str) -> str:
+    """Return the value of code without quantities, which is made of what an expression may hold alone."""
+    if _number(code) is not None:
+        return code
+    known = {"np": np, "sin": sin, "cos": cos, "tan": tan, "sqrt": sqrt, "abs": abs, "atan2": atan2}
+    try:
+        with np.errstate(all="ignore"):
+            return _written(float(eval(code, {"__builtins__": {}, **known})))
+    except (ArithmeticError, TypeError, ValueError):
+        raise WrongValue(Message("{text} has no value", text=code)) from None
+
+
 def amount(text: object, unit: str) -> float:
     """Return a number that stands with its unit.
 
@@ -74,7 +112,7 @@ def amount(text: object, unit: str) -> float:
     """
     if isinstance(text, (int, float)) and not isinstance(text, bool):
         if unit == "1":
-            return float(text)
+            return float(_written(text))
         raise WrongValue(Message('a unit is missing: "{text:g} {unit}"', text=text, unit=unit))
     match = re.fullmatch(r"\s*([+-]?\d+(?:\.\d+)?(?:[eE][+-]?\d+)?)\s*(.*?)\s*", str(text))
     if match is None:
@@ -83,9 +121,10 @@ def amount(text: object, unit: str) -> float:
         )
     if not match[2]:
         if unit == "1":
-            return float(match[1])
+            return float(_written(float(match[1])))
         raise WrongValue(Message('a unit is missing: "{value} {unit}"', value=match[1], unit=unit))
-    return float(convert(float(match[1]), parse_unit(match[2]), unit))
+    value = float(_written(float(match[1])))
+    return float(convert(value, parse_unit(match[2]), unit))
 
 
 def unit_of(text: object) -> str:
@@ -164,7 +203,7 @@ class ExpressionReader:
                     unit=unit,
                 )
             )
-        return QuantityExpression(code, names)
+        return QuantityExpression(code, names) if names else QuantityExpression(_value(code))
 
     def condition(self, text: object) -> QuantityExpression:
         """Read a condition: comparisons and calls, joined by ``and`` and ``or``.
@@ -189,13 +228,15 @@ class ExpressionReader:
                 return match[0]
             name = f"_literal{len(literals)}"
             home = canonical(unit)
-            literals[name] = float(convert(float(match[1]), unit, home)), home
+            literals[name] = float(convert(float(_written(float(match[1]))), unit, home)), home
             return name
 
         try:
             tree = ast.parse(_LITERAL.sub(literal, text).strip(), mode="eval").body
         except (SyntaxError, ValueError, RecursionError):
             raise WrongValue(Message("{text} is no expression", text=repr(text))) from None
+        if _depth(tree) > _DEEPEST:
+            raise WrongValue(Message("{text} is nested too deep", text=repr(text)))
         return tree, literals
 
     def _of(
@@ -204,7 +245,7 @@ class ExpressionReader:
         """Return the code, the names, and the unit of a tree; None for a unit that is not followed."""
         match node:
             case ast.Constant(value=value) if isinstance(value, (int, float)) and not isinstance(value, bool):
-                return f"{value:.15g}", (), "1"
+                return _written(value), (), "1"
             case ast.Name(id=name) if name in literals:
                 return f"{literals[name][0]:.15g}", (), literals[name][1]
             case ast.Name(id=name):
@@ -220,9 +261,17 @@ class ExpressionReader:
                 return f"-{_bracketed(code)}", names, unit
             case ast.BinOp(left=left, op=op, right=right) if type(op) in _OPERATORS:
                 first, second = self._of(left, literals), self._of(right, literals)
+                if isinstance(op, ast.Pow):
+                    self._check_power(node, second[0])
                 code = f"{_bracketed(first[0])} {_OPERATORS[type(op)]} {_bracketed(second[0])}"
+                if (one := _number(first[0])) is not None and (other := _number(second[0])) is not None:
+                    code = self._folded(node, op, one, other)
                 return code, _joined(first[1], second[1]), self._combined(op, first, second)
             case ast.Call(func=ast.Name(id=name), args=arguments, keywords=[]) if name in FUNCTIONS:
+                if len(arguments) != _ARGUMENTS.get(name, 1):
+                    raise WrongValue(
+                        Message("{name} takes {count} values", name=name, count=_ARGUMENTS.get(name, 1))
+                    )
                 read = [self._of(a, literals) for a in arguments]
                 code = f"{_IN_CODE.get(name, name)}({', '.join(r[0] for r in read)})"
                 unit = {"atan2": "deg", "sqrt": None}.get(
@@ -236,6 +285,28 @@ class ExpressionReader:
                 found=ast.unparse(node),
             )
         )
+
+    @staticmethod
+    def _check_power(node: ast.BinOp, exponent: str) -> None:
+        """Refuse powers whose digits could fill the memory: of powers, and with large exponents."""
+        value = _number(exponent)
+        nested = any(isinstance(n, ast.Pow) for n in ast.walk(node.left))
+        if value is None or abs(value) > _MOST_POWER or nested:
+            raise WrongValue(
+                Message(
+                    "the exponent of a power is a number up to {most}, and its base no power; found {found}",
+                    most=_MOST_POWER,
+                    found=ast.unparse(node),
+                )
+            )
+
+    @staticmethod
+    def _folded(node: ast.BinOp, op: ast.operator, one: float, other: float) -> str:
+        """Return the value of an operation on two numbers."""
+        try:
+            return _written(_ARITHMETIC[type(op)](one, other))
+        except (ArithmeticError, ValueError):
+            raise WrongValue(Message("{text} has no value", text=ast.unparse(node))) from None
 
     @staticmethod
     def _combined(op: ast.operator, first: tuple, second: tuple) -> str | None:
@@ -317,6 +388,14 @@ class ExpressionReader:
     def _called(self, node: ast.Call) -> QuantityExpression:
         assert isinstance(node.func, ast.Name)
         return self.calls[node.func.id](*(ast.unparse(a).strip("'\"") for a in node.args))
+
+
+def _depth(tree: ast.AST) -> int:
+    """Return how deep a tree is, counted level by level."""
+    level, depth = [tree], 0
+    while level:
+        level, depth = [child for node in level for child in ast.iter_child_nodes(node)], depth + 1
+    return depth
 
 
 def _bracketed(code: str) -> str:

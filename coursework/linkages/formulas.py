@@ -7,6 +7,7 @@ complex number.
 from __future__ import annotations
 
 import ast
+import keyword
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -35,6 +36,7 @@ FUNCTIONS = frozenset(
     "sin cos tan sqrt abs atan2 acos asin polar angle wrap np dyads dict "
     "Figure line link ground_pivot pin point slot_link slider rail circle angle_mark max complex Side normal tangential turning polygon_of_velocities polygon_of_accelerations".split()
 )
+_OTHERS = ("pi", "min", "hypot", "result")  #: names that code or an expression uses besides
 _MODES = {"left": "right", "right": "left", "ahead": "behind", "behind": "ahead"}
 
 
@@ -139,6 +141,12 @@ class FormulaWriter:
 
     def __init__(self, linkage: LinkageFile) -> None:
         self.linkage = linkage
+        for name in linkage.given:
+            if keyword.iskeyword(name) or name in FUNCTIONS or name in _OTHERS:
+                raise linkage.refused(
+                    ("given", name),
+                    Message("{name} means something else; call the quantity otherwise", name=name),
+                )
         self.groups, self.rank = groups_of(linkage)
         self.quantities: dict[str, Quantity] = {}
         self.turns: dict[str, str] = {GROUND: "0"}

@@ -22,7 +22,10 @@ ASKED = (
 )  # fmt: skip
 _NAME = re.compile(r"[A-Za-z][A-Za-z0-9]*(?:_[A-Za-z0-9]+)*\Z")
 _POINT = re.compile(r"[A-Z][0-9]*\Z")
-_BODY = re.compile(r"[2-9]|[1-9][0-9]|[a-z][a-z0-9]*\Z")
+_BODY = re.compile(r"(?:[2-9]|[1-9][0-9]|[a-z][a-z0-9]*)\Z")
+_UNPRINTED = re.compile(r"[\x00-\x1f\x7f{}]")  #: in a title, which becomes a line of a template
+_MOST_CHARACTERS, _MOST_ENTRIES = 60_000, 100  #: of a file, and of each of its tables and lists
+_MOST_POINTS = 1000  #: that a question is worth
 _SIDE = re.compile(r"\s*(left|right)\s+of\s+([A-Z]\d*)\s*->\s*([A-Z]\d*)\s*\Z")
 _AHEAD = re.compile(r"\s*(ahead of|behind)\s+([A-Z]\d*)\s*\Z")
 
@@ -214,6 +217,13 @@ def read_linkage(path: Path, shown: str = "") -> LinkageFile:
     with author_faults():
         source = source_of(path)
         name = Path(shown or path)
+        if len(source) > _MOST_CHARACTERS:
+            raise BadInput(
+                "{source_name} has {count} characters; such a file has at most {most}",
+                source_name=name,
+                count=len(source),
+                most=_MOST_CHARACTERS,
+            )
         return _LinkageReader(name, source, table_of(source, str(name))).linkage()
 
 
@@ -269,7 +279,24 @@ class _LinkageReader(TomlReader):
             raise self.refused(
                 at, Message("{value} is a table; found {result!r}", value=at[-1], result=result)
             )
+        self._count(at, result)
+        for key, value in result.items():
+            if isinstance(value, (Mapping, list)):
+                self._count((*at, key), value)
         return result
+
+    def _count(self, at: Sequence[str | int], value: Any) -> None:
+        """Refuse more entries than any mechanism has: the time to compile them grows with their square."""
+        if len(value) > _MOST_ENTRIES:
+            raise self.refused(
+                at,
+                Message(
+                    "{value} has {count} entries; there are at most {most}",
+                    value=at[-1],
+                    count=len(value),
+                    most=_MOST_ENTRIES,
+                ),
+            )
 
     def _whole(self, key: str, otherwise: int) -> int:
         value = self.table.get(key, otherwise)
@@ -282,7 +309,7 @@ class _LinkageReader(TomlReader):
     def _title(self) -> Mapping[str, str]:
         title = self.table.get("title", {})
         if isinstance(title, str):
-            return {"": title}
+            title = {"": title}
         if (
             not isinstance(title, Mapping)
             or not title
@@ -292,6 +319,15 @@ class _LinkageReader(TomlReader):
                 ("title",),
                 Message("a title in each language: {example}", example='title = { fr = "…", en = "…" }'),
             )
+        for text in title.values():
+            if _UNPRINTED.search(text) or len(text) > 120:
+                raise self.refused(
+                    ("title",),
+                    Message(
+                        "a title is one line of at most 120 characters without braces; found {text!r}",
+                        text=text[:60],
+                    ),
+                )
         return title
 
     def _checked(self, at: Sequence[str | int], read: Callable[..., Any], *arguments: Any) -> Any:
@@ -390,17 +426,20 @@ class _LinkageReader(TomlReader):
         table = self._table(*at)
         results = {}
         for name, value in table.items():
-            if not _POINT.match(name):
-                raise self.refused(
-                    (*at, name),
-                    Message(
-                        "a point is called by a capital letter, such as A or O2; found {name!r}", name=name
-                    ),
-                )
+            self._check_point((*at, name), name)
             results[name] = self._place(
                 (*at, name), value, (f"x{name}", f"x{name}", f"y{name}", f"gamma_{name}")
             )
         return results
+
+    def _check_point(self, at: Sequence[str | int], point: str) -> None:
+        if not _POINT.match(point):
+            raise self.refused(
+                at,
+                Message(
+                    "a point is called by a capital letter, such as A or O2; found {point!r}", point=point
+                ),
+            )
 
     def _place(self, at: Sequence[str | int], value: Any, names: tuple[str, str, str, str]) -> Place:
         """Read a place; ``names`` of its constants: on the axis, x, y, the direction."""
@@ -464,6 +503,7 @@ class _LinkageReader(TomlReader):
                     ),
                 )
             if "at" in value:
+                self._check_point(at, str(origin))
                 points = {str(origin): Place(), **points}
             angle = value.get("angle")
             results[name] = BodyEntry(
@@ -487,13 +527,7 @@ class _LinkageReader(TomlReader):
         )
         results = {}
         for point, place in points.items():
-            if not _POINT.match(point):
-                raise self.refused(
-                    ("bodies", name),
-                    Message(
-                        "a point is called by a capital letter, such as A or O2; found {point!r}", point=point
-                    ),
-                )
+            self._check_point(("bodies", name), point)
             own = (f"{origin}{point}", f"x_{point}_{name}", f"y_{point}_{name}", f"gamma_{point}")
             results[point] = self._place(("bodies", name), place, own)
         return results
@@ -688,6 +722,7 @@ class _LinkageReader(TomlReader):
         for point, place in value.items():
             if point == "angle":
                 continue
+            self._check_point(at, point)
             if not isinstance(place, list) or len(place) != 2:
                 raise self.refused(
                     at,
@@ -720,7 +755,7 @@ class _LinkageReader(TomlReader):
                 )
         points = ask.get("points", {})
         if not isinstance(points, Mapping) or not all(
-            isinstance(n, (int, float)) and n > 0 for n in points.values()
+            isinstance(n, (int, float)) and 0 < n <= _MOST_POINTS for n in points.values()
         ):
             raise self.refused(
                 ("ask", "points"),
