@@ -19,7 +19,7 @@ _SEEDS = defaultdict(set)  #: a variant for each drawing
 #: Where a point of the paper is on the screen, px; the surface is scrolled into sight where it is not.
 _PLACE = """([x, y]) => {
   const n = document.querySelector("[data-surface]"), at = n.getBoundingClientRect();
-  if (at.top < 0 || at.bottom > innerHeight) n.scrollIntoView({ block: "center" });
+  if (at.top < 140 || at.bottom > innerHeight) n.scrollIntoView({ block: "center" });
   const b = n.getBoundingClientRect(), v = n.getAttribute("viewBox").split(" ").map(Number);
   return [b.left + (x - v[0]) * b.width / v[2], b.top + (-y - v[1]) * b.height / v[3], b.left, b.top, b.right, b.bottom];
 }"""
