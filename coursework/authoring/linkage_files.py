@@ -80,7 +80,7 @@ def _written(folder: Path, name: str, text: str, langs: Collection[str]) -> list
 
 @contextmanager
 def mechanism_alone(
-    path: Path, opened: Callable[[Path], Mapping[str, CourseExercise[Any]]]
+    path: Path, opened: Callable[[Path], Any]
 ) -> Iterator[tuple[CourseExercise[Any], CompiledLinkage]]:
     """Provide the exercise of a mechanism's file that stands in no course; one that asks nothing is asked its mobility.
 

@@ -48,6 +48,30 @@ def turns_round(
     return good.reshape(*shape, _STEPS).all(axis=-1)
 
 
+def reference_values(
+    functions: Callable[[], Sequence[Callable[..., Any]]], names: Sequence[str], given: Mapping[str, Any]
+) -> dict[str, Any]:
+    """Return quantities from what is given alone.
+
+    Parameters
+    ----------
+    functions
+        A function that returns those of the quantities, and those that they need.
+    names
+        Quantities, given or computed.
+    given
+        Values by name.
+
+    Returns
+    -------
+    Their values by name.
+    """
+    graph = Graph({f.__name__: f for f in functions()})
+    wanted = tuple(n for n in names if n in graph.names)
+    found = graph.evaluate(wanted, {n: v for n, v in given.items() if n in graph.leaves}) if wanted else {}
+    return {n: found.get(n, given.get(n)) for n in names}
+
+
 class SlideTrack(NamedTuple):
     """Slide as the file states it: the sliding point, its body, the guide, a place on the line and its direction in the guide's frame
     (mm, degrees; quantities or functions of them), the quantity that is the distance along it."""

@@ -26,7 +26,7 @@ from coursework.linkages.linkage_file import (
 )
 from coursework.linkages.questions import QuestionWriter
 from coursework.linkages.sentences import exercise_text, solution_text, spoken
-from coursework.linkages.vectors import PolygonWriter
+from coursework.linkages.vectors import PAPER_MM
 from coursework.messages import Message
 
 _IMPORTS = """\
@@ -36,7 +36,7 @@ from math import pi
 from coursework.degrees import acos, angle, atan2, cos, from_radians, polar, sin, sqrt, tan, wrap
 from coursework.kinematics import dyads
 from coursework.kinematics.chains import Vector
-from coursework.linkages.closure import SlideTrack, closure_gaps, turns_round
+from coursework.linkages.closure import SlideTrack, closure_gaps, reference_values, turns_round
 from coursework.linkages.large import LargeGroup
 """
 _EXERCISE_IMPORTS = """\
@@ -47,7 +47,8 @@ _SOLUTION_IMPORTS = """from coursework.figures.polygons import (
     Side, normal, polygon_of_accelerations, polygon_of_velocities, tangential, turning,
 )
 from coursework.mechanics import Body, Gear, Load, Mechanism, Slide
-from coursework.solution import mistake, stable, told_after
+from coursework.marking.drawn_polygons import DrawingParts, met, off_both, scale_for, to_paper, turned, verdicts
+from coursework.solution import judge, mistake, stable, told_after
 """
 
 
@@ -104,13 +105,14 @@ class CompiledLinkage:
         symbols |= {
             f"mode_{p}": rf"\mathrm{{mode}}_{{{p}}}" for p, e in self.formulas.modes.items() if e.is_drawn
         }
+        drawing = f"\n    drawing_mm={PAPER_MM}," if self.questions.polygons else ""
         driver = f"Driver({linkage.angle!r}, {linkage.speed!r}, {linkage.acceleration!r}{self._effort()})"
         return (
             "EXERCISE = Exercise(\n    given={\n" + "\n".join(given) + "\n    },\n"
             f"    helpers=({''.join(f'{n}, ' for n in helpers)}),\n"
             f"    constraints=({''.join(f'{c}, ' for c in conditions)}),\n"
             "    parts=(\n" + "\n".join(parts) + "\n    ),\n"
-            f"    figure=figure,\n    version={linkage.version},\n    symbols={symbols!r},\n    driver={driver},\n)"
+            f"    figure=figure,\n    version={linkage.version},\n    symbols={symbols!r},\n    driver={driver},{drawing}\n)"
         )
 
     def _effort(self) -> str:
@@ -138,6 +140,10 @@ class CompiledLinkage:
             code = " & ".join(f"(abs({sine}) > 0.15)" for sine in formulas.sines.values() if names_in(sine))
             if code:
                 results.append(_condition("no_dead_point_is_near", code))
+        for polygon in self.questions.polygons if varies else ():
+            lengths = ", ".join(polygon.lengths)
+            code = f"np.minimum.reduce([{lengths}]) > 0.12 * np.maximum.reduce([{lengths}])"
+            results.append(_condition(f"{polygon.kind}_vectors_are_long_enough_to_draw", code))
         asked = [q.name for q in self.questions.questions]
         rates = [n for n in asked if n.startswith(("omega", "alpha")) and n in formulas.quantities]
         if varies and linkage.speed and rates:
@@ -265,13 +271,19 @@ class CompiledLinkage:
         return "\n\n\n".join(p for p in pieces if p)
 
     def _polygons(self) -> str:
-        """Return the code of the polygons that are asked; nothing where none is."""
-        writer = PolygonWriter(self.formulas)
-        codes = [writer.code(kind) for kind in self.questions.polygons]
-        if not codes:
+        """Return the code of the polygons that are asked, with their judges; nothing where none is.
+
+        Both take what is given alone: an answer that is wrong elsewhere changes no drawing.
+        """
+        polygons = self.questions.polygons
+        if not polygons:
             return ""
-        listed = ", ".join(codes)
-        return f"def polygons({', '.join(names_in(listed + ','))}):\n    return ({listed},)"
+        names = dict.fromkeys(n for p in polygons for n in names_in(p.code("scale")) if n != "scale")
+        given = [n for n in self._leaves(tuple(names)) if n != "scale"]
+        given += [n for n in names if n in self.linkage.given and n not in given]
+        listed = ", ".join(p.reference(given, p.scale) for p in polygons)
+        stated = f"def polygons({', '.join([*given, *(p.scale for p in polygons)])}):\n    return ({listed},)"
+        return "\n\n\n".join([*(p.function() for p in polygons), *(p.judge(given) for p in polygons), stated])
 
     def _residual(self) -> str:
         """Return the code of the residual: joints and their rates, from the frames of the bodies."""

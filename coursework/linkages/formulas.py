@@ -34,7 +34,7 @@ Chain: TypeAlias = list[tuple[str, str, str, str]]  #: vectors as code: length, 
 
 FUNCTIONS = frozenset(
     "sin cos tan sqrt abs atan2 acos asin polar angle wrap np dyads dict "
-    "Figure line link ground_pivot pin point slot_link slider rail circle angle_mark max complex Side normal tangential turning polygon_of_velocities polygon_of_accelerations".split()
+    "Figure line link ground_pivot pin point slot_link slider rail circle angle_mark max complex Side normal tangential turning polygon_of_velocities polygon_of_accelerations scale_for to_paper turned met off_both verdicts DrawingParts".split()
 )
 _OTHERS = ("pi", "min", "hypot", "result")  #: names that code or an expression uses besides
 _MODES = {"left": "right", "right": "left", "ahead": "behind", "behind": "ahead"}
@@ -240,6 +240,11 @@ class FormulaWriter:
         words = {k: str(v) for k, v in more.pop("words", {}).items()}
         self.quantities[name] = Quantity(name, code, unit, symbol, step, words, **more)
         return name
+
+    def add(self, quantity: Quantity) -> None:
+        """Add a quantity as it is; one whose name is given is refused."""
+        self.write(quantity.name, quantity.code, quantity.unit)
+        self.quantities[quantity.name] = quantity
 
     def _hide(self, name: str, code: str) -> str:
         if name not in self.quantities:

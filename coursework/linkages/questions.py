@@ -11,6 +11,7 @@ from coursework.errors import nearest
 from coursework.linkages.formulas import FormulaWriter, UsualMistake, over
 from coursework.linkages.linkage_file import GROUND
 from coursework.linkages.terms import Heading, Plane, Sum
+from coursework.linkages.vectors import PolygonWriter
 from coursework.messages import Message
 
 _CENTRE = re.compile(r"I(\d+|[a-z][a-z0-9]*?)_?(\d+|[a-z][a-z0-9]*)\Z")
@@ -45,7 +46,7 @@ class QuestionWriter:
         self.formulas, self.linkage = formulas, formulas.linkage
         self.questions: list[LinkageQuestion] = []
         self.mistakes: list[UsualMistake] = list(formulas.mistakes)
-        self.polygons: list[str] = []
+        self.polygons: list[PolygonWriter] = []
         writers: dict[str, Callable[[Any], None]] = {
             "mobility": self._mobility,
             "class": self._class,
@@ -410,7 +411,53 @@ class QuestionWriter:
                     Message("a polygon is of 'velocity' or 'acceleration'; found {name!r}", name=name),
                 )
         self._needs_speed("polygon")
-        self.polygons = list(dict.fromkeys(names))
+        self.polygons = [PolygonWriter(self.formulas, name) for name in dict.fromkeys(names)]
+        targets: dict[str, list[str]] = {"too_small": [], "upside_down": [], "other_scale": []}
+        wrong: dict[str, list[str]] = {"too_small": [], "upside_down": [], "other_scale": []}
+        for polygon in self.polygons:
+            for quantity in polygon.quantities():
+                self.formulas.add(quantity)
+            judge = f'"drawing_{polygon.kind}"'
+            words = {"k": f"k_{polygon.letter}", "pole": polygon.pole, "kind": polygon.kind}
+            self._ask(
+                polygon.scale,
+                f"drawn_scale_{polygon.kind}",
+                words,
+                unit=f'"{self.formulas.quantities[polygon.scale].unit}"',
+                judge=judge,
+            )
+            for part, image in polygon.parts.items():
+                key = "drawn_pole" if image == polygon.pole else "drawn_image"
+                points = "1" if image == polygon.pole else "2"
+                self._ask(
+                    part,
+                    key,
+                    {**words, "image": image},
+                    unit='"mm"',
+                    kind='"point"',
+                    judge=judge,
+                    points=points,
+                )
+            self.mistakes += polygon.mistakes()
+            k, parts = polygon.scale, [*polygon.parts]
+            for fault, scale, there in (
+                ("too_small", f"10 * {k}", [f"{p} / 10" for p in parts]),
+                ("upside_down", f"1 / {k}", parts),
+                ("other_scale", f"2 * {k}", parts),
+            ):
+                # One known vector alone agrees with any scale: then it is its length that is wrong.
+                if fault != "other_scale" or sum(side.is_known for side in polygon.sides) > 1:
+                    targets[fault] += [k, *parts]
+                    wrong[fault] += [scale, *there]
+        for key, name, kind in (
+            ("too_small", "too_small", "mistake"),
+            ("upside_down", "scale_upside_down", "inverse"),
+            ("other_scale", "scale_not_drawn", "mistake"),
+        ):
+            if targets[key]:
+                self.mistakes.append(
+                    UsualMistake(name, tuple(targets[key]), tuple(wrong[key]), f"drawn_{key}", {}, kind)
+                )
 
 
 def _centre_index(words: Mapping[str, str]) -> str:

@@ -15,7 +15,7 @@ from coursework.linkages.expressions import QuantityExpression
 from coursework.linkages.formulas import FormulaWriter
 from coursework.linkages.groups import Dyad, HigherGroup, Wheel
 from coursework.linkages.linkage_file import GROUND, Place, SlideEntry
-from coursework.linkages.questions import QuestionWriter
+from coursework.linkages.questions import LinkageQuestion, QuestionWriter
 from coursework.quantities.formula_latex import PrintedName, tree_latex
 
 _FOLDER = Path(__file__).parents[1] / "language" / "linkages"
@@ -159,7 +159,7 @@ def exercise_text(formulas: FormulaWriter, questions: QuestionWriter, lang: str)
     """
     writer = SentenceWriter(formulas, lang)
     linkage = formulas.linkage
-    pieces = [f"# {_title(linkage.title, lang, linkage.name)}", _statement(writer)]
+    pieces = [f"# {_title(linkage.title, lang, linkage.name)}", _statement(writer, questions.questions)]
     for point, entry in formulas.modes.items():
         if entry.is_drawn:
             key = "mode" if entry.end else "mode_slide"
@@ -181,7 +181,7 @@ def _title(titles: Mapping[str, str], lang: str, name: str) -> str:
     return titles.get(lang) or titles.get("") or name
 
 
-def _statement(writer: SentenceWriter) -> str:
+def _statement(writer: SentenceWriter, questions: Sequence[LinkageQuestion]) -> str:
     formulas, linkage = writer.formulas, writer.linkage
     sentence = writer.sentence
     fixed = [_frame_point(writer, p, place) for p, place in linkage.ground.items()]
@@ -231,7 +231,8 @@ def _statement(writer: SentenceWriter) -> str:
             motion.append(sentence("statement", "force", words))
     if linkage.loads:
         motion.append(sentence("statement", "forces"))
-    return "\n\n".join(" ".join(part) for part in (bodies, joints, assembled, motion) if part)
+    drawing = [sentence("statement", "drawing")] if any(q.key == "drawn_pole" for q in questions) else []
+    return "\n\n".join(" ".join(part) for part in (bodies, joints, assembled, motion, drawing) if part)
 
 
 def _with_unit(writer: SentenceWriter, expression: QuantityExpression, unit: str) -> str:

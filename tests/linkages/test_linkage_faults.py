@@ -105,6 +105,7 @@ def test_an_assembly_that_exists_for_no_draw_says_which_constraint_refuses(tmp_p
     text = TOGGLE.replace('r4 = "150 mm"', 'r4 = "2 mm"').replace(
         'require = ["r2 < r4", "is_crank(2)", "transmission_angle(B) > 25 deg"]', ""
     )
+    text = text.replace('polygon = ["velocity", "acceleration"]', "")
     (folder / "exercises" / "toggle.toml").write_text(text, "utf-8")
     with pytest.raises(Starved, match="the_mechanism_closes"):
         open_course(folder)["toggle"].variant(0)
