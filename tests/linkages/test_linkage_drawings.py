@@ -34,7 +34,7 @@ def test_a_right_drawing_gets_full_marks_from_any_pole_and_scale():
     assert {n: marks[n].points / marks[n].out_of for n in drawn} == dict.fromkeys(drawn, 1.0)
 
 
-@pytest.mark.parametrize("point, mistake", [("v_a", "pv_a_sense"), ("a_b1", "a_a_b1_sense")])
+@pytest.mark.parametrize(("point", "mistake"), [("v_a", "pv_a_sense"), ("a_b1", "a_a_b1_sense")])
 def test_a_vector_laid_off_backwards_is_named_and_costs_its_end_alone(point, mistake):
     variant = course()["four_bar"].variant(2)
     answers = _drawing(variant)
@@ -46,7 +46,9 @@ def test_a_vector_laid_off_backwards_is_named_and_costs_its_end_alone(point, mis
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", ["four_bar", "toggle", "two_loops", "slotted_lever", "scotch_yoke", "geared_five_bar"])
+@pytest.mark.parametrize(
+    "name", ["four_bar", "toggle", "two_loops", "slotted_lever", "scotch_yoke", "geared_five_bar"]
+)
 def test_the_mechanisms_to_start_from_pass_their_check(name):
     (report,) = check_all(course(), [name], 20, lambda *_: None)
     assert not report.failures
