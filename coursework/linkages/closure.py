@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from coursework.mechanics.linkage import MM, BodyPoint, Linkage
+from coursework.mechanics.linkage import MM, BodyPoint, GearJoint, Linkage
 from coursework.mechanics.statement import Mechanism, Place
 from coursework.quantities.graph import Graph
 
@@ -176,12 +176,24 @@ class _Frames:
         faster = max([1e-12, *((r**2 + abs(g)) * far for r, g in zip(self.rates, self.gains, strict=True))])
         sizes = (far, fast, faster)
         results = [abs(one[k] - other[k]) / sizes[k] for one, other in ends for k in range(order + 1)]
+        for gear in linkage.gears:
+            results += self._of_gear(gear, order)
         for track in tracks:
             results += self._of_track(track, order, sizes)
         for inner, start, end, side in sides:
             B, P, Q = (self.carried(linkage.owner(point))[0] for point in (inner, start, end))
             area = ((Q - P).conjugate() * (B - P)).imag / max(abs(Q - P) * abs(B - P), 1e-300)
             results.append(max(-area * float(linkage.values[side]), 0.0))
+        return results
+
+    def _of_gear(self, gear: GearJoint, order: int) -> list[float]:
+        """Return how far two wheels are from rolling on each other: their arcs, seen from the carrier, and the rates of these."""
+        first, second = gear.radii
+        results = []
+        for values in (self.turns, self.rates, self.gains)[: order + 1]:
+            one, other, carrier = (values[b] for b in (gear.first, gear.second, gear.carrier))
+            arcs = first * (one - carrier), second * (other - carrier)
+            results.append(abs(sum(arcs)) / (max(map(abs, arcs)) or 1.0))
         return results
 
     def _of_track(self, track: SlideTrack, order: int, sizes: tuple[float, float, float]) -> list[float]:
