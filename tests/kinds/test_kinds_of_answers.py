@@ -188,7 +188,7 @@ def test_what_a_person_marks_is_neither_right_nor_wrong(variant):
 # --------------------------------------------------------------------- promises
 
 
-@pytest.mark.parametrize("count", [15, pytest.param(60, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("count", [10, pytest.param(60, marks=pytest.mark.slow)])
 def test_every_promise_is_proved_of_them(root, count):
     report = checks.check(coursework.open_course(root)["coil"], count)
     assert not report.failures

@@ -7,7 +7,7 @@ from functools import cache
 
 import numpy as np
 import pytest
-from sweeps import sampled, seeds
+from sweeps import sampled, seeds, slow
 from tables import each_row
 
 import coursework
@@ -25,6 +25,9 @@ COURSE = coursework.open_course()
 WITH_LOOPS = tuple(n for n in COURSE.names if any(part.loop for part in COURSE[n].spec.parts))
 LOOPS = [(n, loop) for n in WITH_LOOPS for loop in COURSE[n].solution.loops]
 every_loop = pytest.mark.parametrize(("name", "loop"), LOOPS)
+few_loops = pytest.mark.parametrize(
+    ("name", "loop"), [one if k % 3 == 0 else pytest.param(*one, marks=slow) for k, one in enumerate(LOOPS)]
+)
 every_exercise = pytest.mark.parametrize("name", WITH_LOOPS)
 
 
@@ -262,7 +265,7 @@ def test_an_equation_that_loses_a_quadrant_is_told_so_and_not_blamed_for_numbers
     assert ("only for some positions" in mark.feedback) == (slip == "slip:some_positions")
 
 
-@every_loop
+@few_loops
 @pytest.mark.parametrize("lang", sampled(["fr", "en"], ["fr"]))
 def test_a_wrong_sign_and_a_forgotten_link_are_told_by_the_symbol_of_every_link(name, loop, lang):
     """The wrong equations are put together here from the vectors, on an axis turned by 20°."""

@@ -354,7 +354,7 @@ def counted(few, many):
 
 @pytest.mark.parametrize(
     ("seed", "count"),
-    [(7, 1200), *(pytest.param(seed, 3000, marks=pytest.mark.slow) for seed in (0, 1, 2, 3))],
+    [(7, 600), *(pytest.param(seed, 3000, marks=pytest.mark.slow) for seed in (0, 1, 2, 3))],
 )
 def test_a_nasty_text_is_read_or_said_to_be_unreadable(seed, count):
     with np.errstate(all="raise"):

@@ -4,6 +4,7 @@ import html
 import re
 
 import pytest
+from sweeps import sampled
 
 import coursework
 
@@ -18,7 +19,7 @@ def framed(shown):
     return html.unescape(re.search(r'<iframe srcdoc="([^"]*)"', shown)[1])
 
 
-@pytest.mark.parametrize("lang", ["fr", "en"])
+@pytest.mark.parametrize("lang", sampled(["fr", "en"], ["fr"]))
 def test_a_notebook_moves_the_figure_alone_until_all_is_answered(lang, here):
     study = coursework.study("four_bar_motion", seed=3, lang=lang)
     shown = study.motion("acceleration")
@@ -35,7 +36,7 @@ def test_a_notebook_moves_the_figure_alone_until_all_is_answered(lang, here):
     assert all(f"{name}=" in framed(after[0]["text/html"]) for name in told)
 
 
-@pytest.mark.parametrize("lang", ["fr", "en"])
+@pytest.mark.parametrize("lang", sampled(["fr", "en"], ["fr"]))
 def test_a_notebook_shows_no_motion_that_is_the_answer(lang, here):
     study = coursework.study("coupler_curve", seed=3, lang=lang)
     assert [*study.motion().bundles()[0]] == ["text/plain", "text/markdown"]
