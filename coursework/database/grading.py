@@ -12,19 +12,17 @@ from sqlalchemy import Connection
 
 from coursework.course.course import Course
 from coursework.database.assignments import issued_of
-from coursework.database.current_marks import last_markings
 from coursework.database.decisions import read_decisions, remember_written, store_new_decisions
-from coursework.database.marking import MarkedNow, Work, mark_changed
+from coursework.database.marking import MarkedNow, Work, mark_and_store
 from coursework.database.publication import late_penalties
 from coursework.database.store import Store
-from coursework.database.submissions import Submission, insert_submission, rows_of
+from coursework.database.submissions import Submission, insert_submission
 from coursework.errors import BadInput
 from coursework.gradebook.book import Gradebook
 from coursework.gradebook.class_marking import rejecting
 from coursework.gradebook.decisions import DecisionFiles
 from coursework.gradebook.feedback_form import USUAL, FeedbackForm, shows_solutions
 from coursework.gradebook.grading import nothing_in, usual_feedback, write_marks
-from coursework.gradebook.placing import placed_sheets
 from coursework.gradebook.rows import Rejected, path_text
 from coursework.gradebook.submissions import find, read_file
 from coursework.system.tables import SPREADSHEETS, Spreadsheet
@@ -72,12 +70,12 @@ def grade_new(
         issued = issued_of(connection, assignment_id)
         shows_solutions(issued, form)
         submitted = _store_submissions(connection, assignment_id, submissions, replaces=replaces)
-        if not last_markings(connection, assignment_id):
-            sheets = placed_sheets(course, issued, rows_of(connection, assignment_id))
-            if not sheets.sheets:
-                raise BadInput(nothing_in(submissions, sheets.rejected))
+        work = Work(course, store, assignment_id, within=connection)
+        if not work.last and not work.sheets.sheets:
+            raise BadInput(nothing_in(submissions, work.sheets.rejected))
         decided = store_new_decisions(connection, assignment_id, files)
-    work = mark_changed(course, store, assignment_id)
+        work.decisions = read_decisions(connection, assignment_id)
+    mark_and_store(work)
     return GradedNow(submitted, decided, work.summary(), work)
 
 

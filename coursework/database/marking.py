@@ -4,6 +4,7 @@ last marking."""
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Iterator, Mapping
+from contextlib import nullcontext
 from datetime import UTC, datetime
 from typing import Any, NamedTuple
 
@@ -60,10 +61,17 @@ class MarkedNow(NamedTuple):
 class Work:
     """Sheets of an assignment, or of one submission, with their last markings."""
 
-    def __init__(self, course: Course, store: Store, assignment_id: int, delivery_id: int | None = None):
+    def __init__(
+        self,
+        course: Course,
+        store: Store,
+        assignment_id: int,
+        delivery_id: int | None = None,
+        within: Connection | None = None,
+    ):
         self.course, self.store, self.assignment_id = course, store, assignment_id
         self.now: dict[SheetKey, Graded | str] = {}
-        with store.reading() as connection:
+        with nullcontext(within) if within is not None else store.reading() as connection:
             self._read(connection, delivery_id)
 
     def _read(self, connection: Connection, delivery_id: int | None) -> None:
@@ -219,11 +227,15 @@ def would_change(course: Course, store: Store, assignment_id: int) -> MarkedNow:
 def mark_changed(course: Course, store: Store, assignment_id: int, delivery_id: int | None = None) -> Work:
     """Mark the changed sheets of an assignment, or of a submission; store their marks, and return the work
     with all sheets."""
-    work = Work(course, store, assignment_id, delivery_id)
+    return mark_and_store(Work(course, store, assignment_id, delivery_id))
+
+
+def mark_and_store(work: Work) -> Work:
+    """Mark the changed sheets of a work, and store their marks; return it."""
     work.mark()
     if work.now or work.gone:
-        with store.begin() as connection:
-            row = select(assignment.c.id).where(assignment.c.id == assignment_id)
+        with work.store.begin() as connection:
+            row = select(assignment.c.id).where(assignment.c.id == work.assignment_id)
             connection.execute(row.with_for_update(key_share=True))
             work.write(connection)
     return work
