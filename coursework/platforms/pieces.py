@@ -11,6 +11,7 @@ from functools import lru_cache
 from itertools import chain
 from pathlib import Path
 from typing import NamedTuple
+from urllib.parse import unquote_to_bytes
 
 from jinja2 import Environment
 
@@ -23,7 +24,7 @@ from coursework.rendering.environment import render
 from coursework.rendering.html import environment_of
 from coursework.sheets.sheet import Question
 
-_INLINE = re.compile(r'src="data:image/(svg\+xml|png|jpeg);base64,([A-Za-z0-9+/=]+)"')
+_INLINE = re.compile(r'src="data:image/(svg\+xml|png|jpeg)(;base64)?,([^"]+)"')
 _ENDINGS = {"svg+xml": "svg", "png": "png", "jpeg": "jpg"}
 
 
@@ -121,7 +122,7 @@ def with_files(html: str, address: str = "{}") -> tuple[str, tuple[Image, ...]]:
     images: dict[str, Image] = {}
 
     def out(match: re.Match[str]) -> str:
-        data = base64.b64decode(match[2])
+        data = base64.b64decode(match[3]) if match[2] else unquote_to_bytes(match[3])
         image = Image(f"{hashlib.sha256(data).hexdigest()[:16]}.{_ENDINGS[match[1]]}", data)
         images[image.name] = image
         return f'src="{address.format(image.name)}"'

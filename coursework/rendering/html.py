@@ -8,6 +8,7 @@ from collections.abc import Callable, Sequence
 from functools import lru_cache, partial
 from html import escape
 from pathlib import Path
+from urllib.parse import quote
 
 from jinja2 import Environment
 from markupsafe import Markup
@@ -91,8 +92,13 @@ def _drawing(figure: Figure | Picture | Beginning, alt: str) -> str:
 
 def svg_image(svg: str, alt: str) -> str:
     """Return a drawing as an image inside the page."""
-    data = base64.b64encode(svg.encode()).decode()
-    return f'<img src="data:image/svg+xml;base64,{data}" alt="{escape(alt)}">'
+    return f'<img src="{svg_address(svg)}" alt="{escape(alt)}">'
+
+
+def svg_address(svg: str) -> str:
+    """Return the address of a drawing that is in the address itself: a fifth shorter than in base64, and letters that can be
+    compressed. No character in it ends an attribute."""
+    return "data:image/svg+xml," + quote(svg, safe=" /=,;()'")
 
 
 def _css_string(text: str) -> str:

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import base64
 import re
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from hashlib import sha256
 from typing import NamedTuple
+from urllib.parse import unquote_to_bytes
 
 from jinja2 import Environment
 from markupsafe import Markup
@@ -35,7 +35,7 @@ _GOES_ON = re.compile(r"\$\$|[-*+] |\d+[.)] |[ \t]|\||>|[a-zà-ÿ,;:(…]")
 _ANNOUNCES = re.compile(r":[*_\s]*\Z")
 _UNSEEN = re.compile(r"\]\([^)]*\)|\\[a-zA-Z]+|[][${}*_^\\]")  #: marks of Markdown and formulas
 _FENCE = re.compile(r"^```", re.MULTILINE)
-_IMAGE = re.compile(r'<img src="data:image/svg\+xml;base64,([^"]*)"')
+_IMAGE = re.compile(r'<img src="data:image/svg\+xml,([^"]*)"')
 _SIZE = re.compile(r'<svg[^>]*? viewBox="[-\d.]+ [-\d.]+ ([\d.]+) ([\d.]+)"')
 _MOTION = re.compile(rb"<animate[^>]*/>")
 _PIXELS = 3.78  #: of a millimetre
@@ -101,7 +101,7 @@ def _with_files(html: str, files: dict[str, bytes], address: str) -> str:
         return name
 
     def write(image: re.Match[str]) -> str:
-        svg = base64.b64decode(image[1])
+        svg = unquote_to_bytes(image[1])
         name = put(svg)
         size = _SIZE.search(svg.decode())
         room = "".join(

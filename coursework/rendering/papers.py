@@ -226,8 +226,7 @@ def drawing_context(paper: Paper, env: Environment) -> dict[str, Any]:
 
 
 def image(logo: Logo) -> Markup:
-    data = base64.b64encode(logo_svg(logo).encode()).decode()
-    return Markup(f'<img class="logo" src="data:image/svg+xml;base64,{data}" alt="{escape(logo.alt)}">')
+    return Markup(f'<img class="logo" src="{html.svg_address(logo_svg(logo))}" alt="{escape(logo.alt)}">')
 
 
 def tex(

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import base64
 from collections.abc import Sequence
-from html import escape
 from pathlib import Path
 
 from markupsafe import Markup
@@ -41,8 +39,7 @@ def _names(report: ReportContent) -> dict[str, object]:
 
 
 def _image(chart: Chart) -> Markup:
-    data = base64.b64encode(chart.svg.encode()).decode()
-    return Markup(f'<img src="data:image/svg+xml;base64,{data}" alt="{escape(chart.alt)}">')
+    return Markup(html.svg_image(chart.svg, chart.alt))
 
 
 def _drawn(chart: Chart) -> Markup:
