@@ -43,7 +43,7 @@ EXERCISE = Exercise(
     given={
         "z1": drawn(18, 48),
         "z2": drawn(15, 36),
-        "mode": chosen("ring", "sun", "carrier"),
+        "mode": chosen("ring", "sun", "carrier", shown=("omega_b", "omega24", "omega2", "Gamma_out", "Gamma_fix")),
         "omega_a": drawn(-150, 150, step=2, unit="rad/s"),
         "Gamma_in": drawn(5, 60, step=1, unit="N*m"),
     },

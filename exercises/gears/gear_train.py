@@ -52,7 +52,7 @@ EXERCISE = Exercise(
         "z5": drawn(54, 96, step=2),
         "m": drawn(1, 3, step=0.5, unit="mm"),
         "omega1": drawn(-150, 150, step=2, unit="rad/s"),
-        "Gamma1": drawn(2, 20, step=0.5, unit="N*m"),
+        "Gamma1": drawn(2, 20, step=0.5, unit="N*m", shown=("Gamma5",)),
         "eta": drawn(0.94, 0.98, step=0.01),
         "mode": chosen("external", "internal"),
     },

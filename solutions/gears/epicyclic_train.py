@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from coursework.solution import formula, given, mistake
+from coursework.solution import formula, given, mistake, stable
 
 UNITS = {"omega1": "rad/s", "omega3": "rad/s", "omega4": "rad/s"}
 EFFECTS = {"velocity": ("omega_b", "omega2", "omega24"), "forces": ("Gamma_out", "Gamma_fix")}
@@ -54,6 +54,12 @@ def Gamma_out(omega_a, omega_b, Gamma_in):
     return -omega_a / omega_b * Gamma_in
 
 
+def _shares(mode, r0):
+    """Of the input's torque, on what is fixed; the forces on a planet are equal at both meshes."""
+    return np.where(mode == "ring", -1 / r0, np.where(mode == "sun", -r0, 1 / r0 - 1))[()]
+
+
+@stable(lambda Gamma_in, omega_a, _shares: _shares * Gamma_in)
 def Gamma_fix(Gamma_in, Gamma_out):
     """The torques on the whole train add up to zero."""
     return -Gamma_in - Gamma_out

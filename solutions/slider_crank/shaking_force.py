@@ -8,7 +8,7 @@ import numpy as np
 from coursework.degrees import cos, polar, sin
 from coursework.figures import Figure, ground_pivot, line, link, pin, slider, vector
 from coursework.kinematics.dyads import rrp
-from coursework.solution import formula, given, mistake
+from coursework.solution import formula, given, mistake, stable
 
 UNITS = {"lam": "1", "S": "N"}
 SYMBOLS = {"lam": r"\lambda", "S": "S"}
@@ -49,6 +49,7 @@ def mc(mA, k, mB, r2, rc):
 @formula(
     r"\frac{\left(<mA> \times <r2> - <mc> \times <rc>\right) \times <omega2>^2 \times \cos <theta2>}{1000} + <F1> + <F2>"
 )
+@stable(lambda k, F1, F2, mA, rc: (1 - k) * F1 + F2)
 def X(mA, r2, mc, rc, omega2, theta2, F1, F2):
     """Rotating masses and counterweight, and the two forces of the reciprocating mass."""
     return (mA * r2 - mc * rc) * omega2**2 * cos(theta2) / 1000 + F1 + F2
@@ -57,6 +58,7 @@ def X(mA, r2, mc, rc, omega2, theta2, F1, F2):
 @formula(
     r"\frac{\left(<mA> \times <r2> - <mc> \times <rc>\right) \times <omega2>^2 \times \sin <theta2>}{1000}"
 )
+@stable(lambda k, S, theta2, mA, rc: -k * S * sin(theta2))
 def Y(mA, r2, mc, rc, omega2, theta2):
     """The piston has no part in it."""
     return (mA * r2 - mc * rc) * omega2**2 * sin(theta2) / 1000

@@ -23,7 +23,7 @@ from coursework.figures import (
 )
 from coursework.kinematics.cams import rise, rise_dwell_return
 from coursework.quantities import columns
-from coursework.solution import Moving, formula, given, mistake
+from coursework.solution import Moving, formula, given, mistake, stable
 
 UNITS = {
     "TURN": "deg", "u": "1", "way": "1", "f0": "1", "f1": "1", "f2": "1", "f3": "1", "b": "rad",
@@ -159,6 +159,18 @@ def side(rho):
     return np.where(rho < 0, "hollow", "round")[()]
 
 
+def _beyond(CI, Rb, Rr, e, s, s1, d):
+    """CI less the radius of the roller, in digits that a large roller leaves."""
+    return ((s1 - e) ** 2 + Rb * (Rb + 2 * Rr) - e**2 + s * (2 * d + s)) / (CI + Rr)
+
+
+def _flatter(CI, s1, s2, e, d, s):
+    """rho less CI."""
+    bend = s1 * (s1 - e) - s2 * (d + s)
+    return -CI * bend / (CI**2 + bend)
+
+
+@stable(lambda _beyond, _flatter: _beyond + _flatter)
 def rho_c(rho, Rr):
     """The profile is parallel to the pitch curve."""
     return rho - Rr
@@ -174,6 +186,7 @@ def x_K(e, Rr, s1, CI):
 
 
 @formula(r"\left(<d> + <s>\right) \times \left(1 - \frac{<Rr>}{<CI>}\right)")
+@stable(lambda d, s, CI, _beyond: (d + s) * _beyond / CI)
 def y_K(d, s, Rr, CI):
     return (d + s) * (1 - Rr / CI)
 

@@ -3,9 +3,11 @@
 The judge moves the student's own linkage through the range, in the assembly that suits it better.
 """
 
+from functools import reduce
+
 import numpy as np
 
-from coursework.degrees import cos, polar, sin, sqrt, wrap
+from coursework.degrees import acos, angle, cos, polar, sin, sqrt, wrap
 from coursework.errors import Undefined
 from coursework.figures import Figure, ground_pivot, line, link, pin
 from coursework.solution import Judged, formula, given, judge, mistake, stable
@@ -201,48 +203,45 @@ def r3(r1, r2, r4, K3):
     return sqrt(r1**2 + r2**2 + r4**2 - 2 * r2 * r4 * K3)
 
 
-_SHARES = np.linspace(0.0, 1.0, 181)
+_STEPS = 180  #: of the range, in which the motion is followed
+_OPEN = 180.0  #: degrees, the error of a linkage that does not close all along
 
 
-def _motion(r1, r2, r3, r4, law, theta2_0, range2, theta4_0, range4):
-    """Over the range, in both assemblies: by how much the rocker is ahead of where it should be, and its angle with the
-    coupler; degrees, shape (2, ..., 181), NaN where the linkage does not close."""
-    columns = (
-        np.asarray(v, dtype=float)[..., None] for v in (r1, r2, r3, r4, theta2_0, range2, theta4_0, range4)
-    )
-    r1, r2, r3, r4, theta2_0, range2, theta4_0, range4 = columns
-    law = np.asarray(law)[..., None]
+def _at(share, r1, r2, r3, r4, law, theta2_0, range2, theta4_0, range4):
+    """At a share of the range: the error in either assembly, and the lesser angle of coupler and rocker, degrees."""
     a, b = _end(law, 0), _end(law, 1)
-    rise = (_of(law, a + (b - a) * _SHARES) - _of(law, a)) / (_of(law, b) - _of(law, a))
-    wanted = theta4_0 + range4 * rise
-    A = polar(r2, theta2_0 + range2 * _SHARES)
-    line_ = r1 - A
-    apart = abs(line_)
-    with np.errstate(invalid="ignore", divide="ignore"):
-        corner = np.arccos((apart**2 + r4**2 - r3**2) / (2 * apart * r4))
-        transmission = np.degrees(np.arccos((r3**2 + r4**2 - apart**2) / (2 * r3 * r4)))
-    # At C, from the direction of A to that of B.
-    found = [np.degrees(np.angle(-line_) + side * corner) for side in (-1, 1)]
-    return np.stack([wrap(theta4 - wanted) for theta4 in found]), np.broadcast_to(transmission, wanted.shape)
+    rise = (_of(law, a + (b - a) * share) - _of(law, a)) / (_of(law, b) - _of(law, a))
+    CA = polar(r2, theta2_0 + range2 * share) - r1
+    at_C = (abs(CA) ** 2 + r4**2 - r3**2) / (2 * abs(CA) * r4)
+    at_B = (r3**2 + r4**2 - abs(CA) ** 2) / (2 * r3 * r4)
+    closes = abs(at_C) <= 1
+    corner, mu = (acos(np.where(closes, cosine, 1.0)[()]) for cosine in (at_C, at_B))
+    ahead = (wrap(angle(CA) + side * corner - theta4_0 - range4 * rise) for side in (-1, 1))
+    return (*(np.where(closes, abs(error), _OPEN)[()] for error in ahead), np.minimum(mu, 180 - mu))
 
 
-def _worst(*lengths_and_demands):
-    """In the assembly that is nearer."""
-    ahead, _ = _motion(*lengths_and_demands)
-    return np.nan_to_num(abs(ahead).max(axis=-1).min(axis=0), nan=_OPEN)[()]
+def _motion(*linkage):
+    """The structural error in the better assembly, and the least angle of coupler and rocker, 0 where it does not close."""
+    shares = np.arange(_STEPS + 1) / _STEPS
+    if not all(isinstance(value, (str, float, int, np.generic, np.ndarray)) for value in linkage):
+        # Numbers of many digits, one by one.
+        first, second, mu = zip(*(_at(share, *linkage) for share in shares.tolist()), strict=True)
+        return np.minimum(reduce(np.maximum, first), reduce(np.maximum, second)), reduce(np.minimum, mu)
+    first, second, mu = _at(shares, *(np.asarray(value)[..., None] for value in linkage))
+    return np.minimum(first.max(axis=-1), second.max(axis=-1))[()], mu.min(axis=-1)[()]
 
 
-_OPEN = 180.0  #: of a linkage that does not close all along
+def _moved(r1, r2, r3, r4, law, theta2_0, _sweep2, theta4_0, _sweep4):
+    return _motion(r1, r2, r3, r4, law, wrap(theta2_0), _sweep2, wrap(theta4_0), _sweep4)
 
 
-def worst(r1, r2, r3, r4, law, theta2_0, _sweep2, theta4_0, _sweep4):
-    """By the motion of the linkage, degree by degree."""
-    return _worst(r1, r2, r3, r4, law, wrap(theta2_0), _sweep2, wrap(theta4_0), _sweep4)
+def worst(_moved):
+    """By the motion of the linkage, in steps of a 180th of the range."""
+    return _moved[0]
 
 
-def least_transmission(r1, r2, r3, r4, law, theta2_0, range2, theta4_0, range4):
-    _, transmission = _motion(r1, r2, r3, r4, law, theta2_0, range2, theta4_0, range4)
-    return np.minimum(transmission, 180 - transmission).min(axis=-1)[()]
+def least_transmission(_moved):
+    return _moved[1]
 
 
 LENGTHS = ("r2", "r3", "r4")
@@ -251,11 +250,12 @@ LENGTHS = ("r2", "r3", "r4")
 @judge
 def generates_the_function(answers, r1, law, theta2_0, range2, theta4_0, range4, delta, K1, K2):
     """Any linkage of this frame, by its own motion; its structural error as it really is."""
-    own = {name: float(answers[name]) for name in LENGTHS if name in answers}
+    own = {name: np.float64(answers[name]) for name in LENGTHS if name in answers}
     if len(own) < 3:
         return {}
     demands = (law, theta2_0, range2, theta4_0, range4)
-    verdict, deviation = _judged(r1, **own, demands=demands, delta=delta, K1=K1, K2=K2)
+    with np.errstate(all="ignore"):  # lengths without end close nowhere
+        verdict, deviation = _judged(r1, **own, demands=demands, delta=delta, K1=K1, K2=K2)
     said = dict.fromkeys(own, verdict)
     if "worst" in answers:
         said["worst"] = _error(float(answers["worst"]), deviation, verdict.share < 1)
@@ -265,13 +265,13 @@ def generates_the_function(answers, r1, law, theta2_0, range2, theta4_0, range4,
 def _judged(r1, r2, r3, r4, demands, delta, K1, K2):
     if min(r2, r3, r4) <= 0:
         return Judged(0.0, "does_not_close"), _OPEN
-    deviation = float(_worst(r1, r2, r3, r4, *demands))
+    deviation = float(_motion(r1, r2, r3, r4, *demands)[0])
     found = {"deviation": deviation} if deviation < _OPEN else {}
     if deviation <= delta:
         return Judged(1.0, "", found), deviation
     if abs(r2 - r1 * K1) < 0.01 * r2 and abs(r4 - r1 * K2) < 0.01 * r4:
         return Judged(0.0, "ratios_upside_down", found), deviation
-    if float(_worst(r1, r4, r3, r2, *demands)) <= delta:
+    if float(_motion(r1, r4, r3, r2, *demands)[0]) <= delta:
         return Judged(0.0, "crank_and_rocker_exchanged", found), deviation
     if deviation == _OPEN:
         return Judged(0.0, "does_not_close"), deviation

@@ -4,7 +4,7 @@ import numpy as np
 
 from coursework.degrees import cos, sin
 from coursework.figures import Figure, arc, axes, ground_pivot, link, pin
-from coursework.solution import Judged, formula, given, judge, mistake
+from coursework.solution import Judged, formula, given, judge, mistake, stable
 
 from ...exercises.synthesis._positions import in_its_place, placed, side
 from ._pivots import PIVOTS, judged_lengths, of_placement, pivots_of
@@ -44,6 +44,41 @@ def y_B3(y3, L, phi3):
     return y3 + L * sin(phi3)
 
 
+def _ordered(x1, y1, phi1, x2, y2, phi2, x3, y3, phi3):
+    """The three places of A and directions, in turn, so that the first is not the one far from both others."""
+    first, second, third = (x1, y1, phi1), (x2, y2, phi2), (x3, y3, phi3)
+
+    def apart(p, q):
+        return abs(p[0] - q[0]) + abs(p[1] - q[1])
+
+    lone = (apart(first, second) > apart(second, third)) & (apart(first, third) > apart(second, third))
+
+    def turned(one, other):
+        return tuple(np.where(lone, b, a)[()] for a, b in zip(one, other, strict=True))
+
+    return turned(first, second), turned(second, third), turned(third, first)
+
+
+def _centre(places, L):
+    """The point as far from three places of a point at L from A, in digits that far places and a long coupler leave."""
+    (x1, y1, phi1), *others = places
+    rows = []
+    for x2, y2, phi in others:
+        x, y, across = x2 - x1, y2 - y1, 2 * L * sin((phi - phi1) / 2)
+        way = x - across * sin((phi + phi1) / 2), y + across * cos((phi + phi1) / 2)
+        rows.append((*way, (x**2 + y**2) / 2 + L * (x * cos(phi) + y * sin(phi))))
+    (a, b, p), (c, d, q) = rows
+    return x1 + (p * d - q * b) / (a * d - c * b), y1 + (a * q - c * p) / (a * d - c * b)
+
+
+def _O(_ordered):
+    return _centre(_ordered, 0.0)
+
+
+def _C(_ordered, L):
+    return _centre(_ordered, L)
+
+
 def b_A2(x1, y1, x2, y2):
     return (x2 - x1) ** 2 + (y2 - y1) ** 2
 
@@ -57,10 +92,12 @@ def D_A(x1, y1, x2, y2, x3, y3):
     return 2 * ((x2 - x1) * (y3 - y1) - (x3 - x1) * (y2 - y1))
 
 
+@stable(lambda _O: _O[0])
 def x_O(x1, y1, y2, y3, b_A2, b_A3, D_A):
     return x1 + ((y3 - y1) * b_A2 - (y2 - y1) * b_A3) / D_A
 
 
+@stable(lambda _O: _O[1])
 def y_O(y1, x1, x2, x3, b_A2, b_A3, D_A):
     return y1 + ((x2 - x1) * b_A3 - (x3 - x1) * b_A2) / D_A
 
@@ -77,10 +114,12 @@ def D_B(x_B1, y_B1, x_B2, y_B2, x_B3, y_B3):
     return 2 * ((x_B2 - x_B1) * (y_B3 - y_B1) - (x_B3 - x_B1) * (y_B2 - y_B1))
 
 
+@stable(lambda _C: _C[0])
 def x_C(x_B1, y_B1, y_B2, y_B3, b_B2, b_B3, D_B):
     return x_B1 + ((y_B3 - y_B1) * b_B2 - (y_B2 - y_B1) * b_B3) / D_B
 
 
+@stable(lambda _C: _C[1])
 def y_C(y_B1, x_B1, x_B2, x_B3, b_B2, b_B3, D_B):
     return y_B1 + ((x_B2 - x_B1) * b_B3 - (x_B3 - x_B1) * b_B2) / D_B
 
