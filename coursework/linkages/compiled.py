@@ -35,7 +35,10 @@ from math import pi
 
 from coursework.degrees import acos, angle, atan2, cos, from_radians, polar, sin, sqrt, tan, wrap
 from coursework.kinematics import dyads
+from coursework.kinematics.angles import Degrees
 from coursework.kinematics.chains import Vector
+from coursework.kinematics.four_bar import FourBar
+from coursework.kinematics.slider_crank import SliderCrank
 from coursework.linkages.closure import SlideTrack, closure_gaps, reference_values, turns_round
 from coursework.linkages.large import LargeGroup
 """

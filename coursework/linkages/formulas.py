@@ -16,6 +16,7 @@ from typing import Any, TypeAlias
 import numpy as np
 
 from coursework.degrees import atan2, cos, sin, sqrt
+from coursework.linkages.exact_loops import keep_digits_of_bars, keep_digits_of_slider
 from coursework.linkages.groups import Dyad, Group, HigherGroup, Wheel, groups_of
 from coursework.linkages.linkage_file import (
     GROUND,
@@ -34,7 +35,7 @@ Chain: TypeAlias = list[tuple[str, str, str, str]]  #: vectors as code: length, 
 
 FUNCTIONS = frozenset(
     "sin cos tan sqrt abs atan2 acos asin polar angle wrap np dyads dict "
-    "Figure line link ground_pivot pin point slot_link slider rail circle angle_mark max complex Side normal tangential turning polygon_of_velocities polygon_of_accelerations scale_for to_paper turned met off_both verdicts DrawingParts".split()
+    "Figure line link ground_pivot pin point slot_link slider rail circle angle_mark max complex Side normal tangential turning polygon_of_velocities polygon_of_accelerations FourBar SliderCrank Degrees from_radians scale_for to_paper turned met off_both verdicts DrawingParts".split()
 )
 _OTHERS = ("pi", "min", "hypot", "result")  #: names that code or an expression uses besides
 _MODES = {"left": "right", "right": "left", "ahead": "behind", "behind": "ahead"}
@@ -246,7 +247,8 @@ class FormulaWriter:
         self.write(quantity.name, quantity.code, quantity.unit)
         self.quantities[quantity.name] = quantity
 
-    def _hide(self, name: str, code: str) -> str:
+    def hide(self, name: str, code: str) -> str:
+        """Add a hidden quantity, and return its name."""
         if name not in self.quantities:
             self.quantities[name] = Quantity(name, code)
         return name
@@ -299,13 +301,13 @@ class FormulaWriter:
             self._write_point(point)
         return Plane(Sum.of(f"x{point}"), Sum.of(f"y{point}"))
 
-    def _carrier(self, point: str) -> tuple[str, str]:
+    def carrier(self, point: str) -> tuple[str, str]:
         """Return the first placed body that has a point, and the point from which it is reckoned."""
         body = next(b for b in self.order if b != GROUND and point in self.linkage.bodies[b].points)
         return body, self.reference[body]
 
     def _write_point(self, point: str) -> None:
-        body, start = self._carrier(point)
+        body, start = self.carrier(point)
         arm = self.arm(body, start, point)
         place = self.at(start) + arm.vector
         words = {"B": point, "P": start, "body": body}
@@ -322,11 +324,11 @@ class FormulaWriter:
         if name in self.quantities:
             return name
         if point in self.linkage.ground:
-            return self._hide(name, self.local(point, GROUND).complex)
-        body, start = self._carrier(point)
+            return self.hide(name, self.local(point, GROUND).complex)
+        body, start = self.carrier(point)
         arm = self.arm(body, start, point)
         sign = "-" if arm.sign < 0 else "+"
-        return self._hide(name, f"{self.complex(start)} {sign} polar({arm.length.code}, {arm.heading.code})")
+        return self.hide(name, f"{self.complex(start)} {sign} polar({arm.length.code}, {arm.heading.code})")
 
     # --------------------------------------------------------------------- rates
 
@@ -342,7 +344,7 @@ class FormulaWriter:
         if point in self.linkage.ground:
             return Plane()
         if f"{kind}_{point}_x" not in self.quantities:
-            body, start = self._carrier(point)
+            body, start = self.carrier(point)
             before = self._motion(start, kind)
             there = before + self._turning(body, self.arm(body, start, point).vector, kind)
             words = {"B": point, "P": start, "body": body}
@@ -491,7 +493,7 @@ class FormulaWriter:
         distance, line = self._line(P, Q, words)
         side = self._mode(B, "", (P, Q))
         first, second = to_p.length, to_q.length
-        point = self._hide(
+        point = self.hide(
             f"_{B}", f"dyads.rrr({self.complex(P)}, {self.complex(Q)}, {first.code}, {second.code}, {side})"
         )
         corner = self.write(
@@ -511,6 +513,7 @@ class FormulaWriter:
         )  # fmt: skip
         self._finish_rod(q, Q)
         self._rates_rrr(group, to_p, to_q, words)
+        keep_digits_of_bars(self, group, to_p, to_q)
 
     def _write_turn(
         self, body: str, code: str, arm: Arm, offset: Heading, start: str, end: str, step: str, words: Mapping[str, str],
@@ -549,7 +552,7 @@ class FormulaWriter:
         arms = f"{self.complex(B)} - {self.complex(P)}, {self.complex(B)} - {self.complex(Q)}"
         v_P, v_Q = self.velocity(P), self.velocity(Q)
         rates = f"_rates_{B}"
-        self._hide(rates, f"dyads.rrr_rates({arms}, ({_complex(v_P)},), ({_complex(v_Q)},))")
+        self.hide(rates, f"dyads.rrr_rates({arms}, ({_complex(v_P)},), ({_complex(v_Q)},))")
         turning = {**words}
         for body, own, heading, below, start, index in (
             (p, v_Q - v_P, to_q.heading, below_p, words["q"], 0),
@@ -561,7 +564,7 @@ class FormulaWriter:
             )  # fmt: skip
         a_P, a_Q = self.acceleration(P), self.acceleration(Q)
         gains = f"_gains_{B}"
-        self._hide(
+        self.hide(
             gains,
             f"dyads.rrr_rates({arms}, ({_complex(v_P)}, {_complex(a_P)}), ({_complex(v_Q)}, {_complex(a_Q)}))",
         )
@@ -623,8 +626,8 @@ class FormulaWriter:
         side = self._mode(B, "ahead", (P, ""))
         length = arm.length
         unit = f"polar(1, {heading.code})"
-        start = self._hide(f"_line_{B}", self._hidden(base))
-        point = self._hide(
+        start = self.hide(f"_line_{B}", self._hidden(base))
+        point = self.hide(
             f"_{B}", f"dyads.rrp({self.complex(P)}, {length.code}, {start} + 0j, {side}, {unit})"
         )
         reach = f"sqrt({length.factor}**2 - {height}**2)"
@@ -644,6 +647,8 @@ class FormulaWriter:
         self._finish_rod(p, P)
         self._finish_rod(q, B)
         self._rates_rrp(words, arm, sign, heading, placed, distance)
+        if placed == GROUND:
+            keep_digits_of_slider(self, group, arm, base, sign, heading, distance)
 
     def _write_end(self, point: str, there: Plane, words: Mapping[str, str], hidden: str) -> None:
         for axis, component, half in (("x", there.x, "real"), ("y", there.y, "imag")):
@@ -766,7 +771,7 @@ class FormulaWriter:
                 else self.write(f"e_{slide.at}", aside.code, "mm", "offset", f"e_{{{slide.at}}}", words=words)
             )
         side = self._mode(slide.at, "ahead", (Q, ""))
-        pair = self._hide(
+        pair = self.hide(
             f"_guide_{slide.at}",
             f"dyads.rpr({self.complex(P)}, {self.complex(Q)}, {offset or '0.0'}, {side})",
         )
@@ -889,10 +894,10 @@ class FormulaWriter:
         if group.kind == "PRP":
             there = base_1 + Plane.polar(Sum.of(one.distance), way_1).times(sign=sign_1)
             start_1, start_2 = (
-                self._hide(f"_line_{s.at}_{name}", b.complex) for s, b in ((one, base_1), (other, base_2))
+                self.hide(f"_line_{s.at}_{name}", b.complex) for s, b in ((one, base_1), (other, base_2))
             )
             units = [f"polar(1, {way.code})" for way in (way_1, way_2)]
-            hidden = self._hide(
+            hidden = self.hide(
                 f"_{name}", f"dyads.prp({start_1} + 0j, {units[0]}, {start_2} + 0j, {units[1]})"
             )
             self._write_end(name, there, words, hidden)
@@ -918,8 +923,8 @@ class FormulaWriter:
         moved = one.at if one.of == group.q else next(iter(self.linkage.bodies[group.q].points))
         placed, base, sign, way = self._track(one, group.q, moved)
         hidden = f"_{moved}"
-        self._hide(f"_line_{moved}", base.complex)
-        self._hide(hidden, f"_line_{moved} + {'-' if sign < 0 else ''}polar({one.distance}, {way.code})")
+        self.hide(f"_line_{moved}", base.complex)
+        self.hide(hidden, f"_line_{moved} + {'-' if sign < 0 else ''}polar({one.distance}, {way.code})")
         self._write_end(moved, base + Plane.polar(Sum.of(one.distance), way).times(sign=sign), words, hidden)
         self._finish_rod(group.q, moved)
         v = self.velocity(name) - self.carried(placed, self.at(name), "v")
@@ -1032,7 +1037,7 @@ class FormulaWriter:
         )
         arguments = dict.fromkeys([linkage.angle, *leaves, *(n for n in known if n not in moving)])
         words = {"bodies": ", ".join(group.bodies), "loops": self._loop_text(loops)}
-        self._hide(solved, f"{chain}.pose(dict({', '.join(f'{n}={n}' for n in arguments)}))")
+        self.hide(solved, f"{chain}.pose(dict({', '.join(f'{n}={n}' for n in arguments)}))")
         for body in group.bodies:
             turn = self.turns[body]
             self.write(
@@ -1051,7 +1056,7 @@ class FormulaWriter:
                 own = [self._motion(name[1:], kind) for kind in ("v", "a")[:order]]
                 codes = ", ".join((v.x if name[0] == "x" else v.y).code for v in own)
                 pairs.append(f"{name}=({codes},)")
-            hidden = self._hide(
+            hidden = self.hide(
                 f"{rates}_{number}", f"{chain}.rates({solved}, {order}, dict({', '.join(pairs)}))"
             )
             for body in group.bodies:

@@ -162,3 +162,19 @@ def test_a_group_that_does_not_close_is_nan_there_and_says_so_alone():
     found = exercise.solve(only="theta3", **{**given, "theta2": np.array([10.0, 150.0])})["theta3"]
     assert np.isfinite(found[0])
     assert np.isnan(found[1])
+
+
+def test_digits_are_kept_beside_dead_centres_and_change_points():
+    """As by the solution written by hand, whose closed forms are compared with sixty digits elsewhere."""
+    theirs, mine = open_course()["four_bar_motion"], course()["four_bar"]
+    offsets = np.array([1e-10, 1e-7, 1e-4, 1e-2])
+    for lengths, centre in (
+        ({"r1": 200.0, "r2": 60.0, "r3": 100.0, "r4": 160.0}, 0.0),  # all bars in one line at 0: a change point
+        ({"r1": 200.0, "r2": 150.0, "r3": 60.0, "r4": 70.0}, 41.0),  # the crank cannot turn round
+    ):
+        given = {**lengths, "theta2": centre + offsets, "omega2": 3.0, "alpha2": 1.0}
+        names = ["theta3", "theta4", "omega3", "omega4", "alpha3", "alpha4"]
+        right = theirs.solve(only=names, **given, mode="open")
+        found = mine.solve(only=names, **given, mode_B="left")
+        for name in names:
+            np.testing.assert_allclose(found[name], right[name], rtol=1e-12, err_msg=name)
