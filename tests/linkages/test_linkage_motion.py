@@ -169,7 +169,10 @@ def test_digits_are_kept_beside_dead_centres_and_change_points():
     theirs, mine = open_course()["four_bar_motion"], course()["four_bar"]
     offsets = np.array([1e-10, 1e-7, 1e-4, 1e-2])
     for lengths, centre in (
-        ({"r1": 200.0, "r2": 60.0, "r3": 100.0, "r4": 160.0}, 0.0),  # all bars in one line at 0: a change point
+        (
+            {"r1": 200.0, "r2": 60.0, "r3": 100.0, "r4": 160.0},
+            0.0,
+        ),  # all bars in one line at 0: a change point
         ({"r1": 200.0, "r2": 150.0, "r3": 60.0, "r4": 70.0}, 41.0),  # the crank cannot turn round
     ):
         given = {**lengths, "theta2": centre + offsets, "omega2": 3.0, "alpha2": 1.0}
