@@ -94,7 +94,7 @@ def check_all(
     if count < 2:
         return [_with_progress(_check_one(course, name, variants), progress) for name in names]
     with processes(count) as submit:
-        if len(names) < 2 * count:
+        if len(names) < count:
             return [_with_progress(_check_one(course, name, variants, submit), progress) for name in names]
         # The longest first, so that no process waits for another at the end.
         longest = sorted(names, key=lambda name: -_length(course, name))
