@@ -13,6 +13,7 @@ from types import ModuleType
 
 from coursework.errors import BadInput, CourseworkError
 from coursework.linkages.drawing import FigureWriter
+from coursework.linkages.exact_loops import keep_digits
 from coursework.linkages.expressions import ExpressionReader, QuantityExpression
 from coursework.linkages.formulas import FormulaWriter, Quantity, names_in, vector_code
 from coursework.linkages.groups import Dyad
@@ -63,7 +64,9 @@ class CompiledLinkage:
 
     @cached_property
     def formulas(self) -> FormulaWriter:
-        return FormulaWriter(self.linkage)
+        writer = FormulaWriter(self.linkage)
+        keep_digits(writer)
+        return writer
 
     @cached_property
     def questions(self) -> QuestionWriter:

@@ -7,14 +7,31 @@ fixed guide is a slider-crank. Their closed forms take lengths and the crank's a
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
-from coursework.linkages.linkage_file import GROUND
+from coursework.linkages.formulas import Arm, FormulaWriter
+from coursework.linkages.groups import Dyad
+from coursework.linkages.linkage_file import GROUND, SlideEntry
 from coursework.linkages.terms import Heading, Plane, Sum
 
-if TYPE_CHECKING:
-    from coursework.linkages.formulas import Arm, FormulaWriter
-    from coursework.linkages.groups import Dyad
+
+def keep_digits(writer: FormulaWriter) -> None:
+    """Compute the loops of a mechanism that the numeric core knows as a whole by their closed forms.
+
+    Parameters
+    ----------
+    writer
+        The writer, with all quantities of the mechanism.
+    """
+    for group in writer.groups:
+        if isinstance(group, Dyad) and group.kind == "RRR":
+            to_p = writer.arm(group.p, str(group.outer_p), str(group.inner))
+            to_q = writer.arm(group.q, str(group.outer_q), str(group.inner))
+            keep_digits_of_bars(writer, group, to_p, to_q)
+        elif isinstance(group, Dyad) and group.kind == "RRP" and isinstance(group.outer_q, SlideEntry):
+            arm = writer.arm(group.p, str(group.outer_p), str(group.inner))
+            placed, base, sign, heading = writer.track(group.outer_q, group.q, str(group.inner))
+            if placed == GROUND:
+                keep_digits_of_slider(writer, group, arm, base, sign, heading, group.outer_q.distance)
 
 
 def keep_digits_of_bars(writer: FormulaWriter, group: Dyad, to_p: Arm, to_q: Arm) -> None:

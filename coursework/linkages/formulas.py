@@ -16,7 +16,6 @@ from typing import Any, TypeAlias
 import numpy as np
 
 from coursework.degrees import atan2, cos, sin, sqrt
-from coursework.linkages.exact_loops import keep_digits_of_bars, keep_digits_of_slider
 from coursework.linkages.groups import Dyad, Group, HigherGroup, Wheel, groups_of
 from coursework.linkages.linkage_file import (
     GROUND,
@@ -513,7 +512,6 @@ class FormulaWriter:
         )  # fmt: skip
         self._finish_rod(q, Q)
         self._rates_rrr(group, to_p, to_q, words)
-        keep_digits_of_bars(self, group, to_p, to_q)
 
     def _write_turn(
         self, body: str, code: str, arm: Arm, offset: Heading, start: str, end: str, step: str, words: Mapping[str, str],
@@ -587,7 +585,7 @@ class FormulaWriter:
 
     # ----------------------------------------------------------------------- RRP
 
-    def _track(self, slide: SlideEntry, body: str, point: str) -> tuple[str, Plane, int, Heading]:
+    def track(self, slide: SlideEntry, body: str, point: str) -> tuple[str, Plane, int, Heading]:
         """Return how a point of a body moves that slides on a placed one: the placed body, the coordinates of the point where the distance
         is 0, the sign of the distance, and the direction of the slide."""
         slides = body == slide.of
@@ -619,7 +617,7 @@ class FormulaWriter:
         assert isinstance(slide, SlideEntry)
         p, q = group.p, group.q
         arm = self.arm(p, P, B)
-        placed, base, sign, heading = self._track(slide, q, B)
+        placed, base, sign, heading = self.track(slide, q, B)
         words = {"P": P, "B": B, "p": p, "q": q, "guide": placed, "s": slide.distance}
         rise = self.at(P) - base
         height = self.write(f"h_{B}", rise.across(heading).code, "mm", "height", f"h_{{{B}}}", words=words)
@@ -647,8 +645,6 @@ class FormulaWriter:
         self._finish_rod(p, P)
         self._finish_rod(q, B)
         self._rates_rrp(words, arm, sign, heading, placed, distance)
-        if placed == GROUND:
-            keep_digits_of_slider(self, group, arm, base, sign, heading, distance)
 
     def _write_end(self, point: str, there: Plane, words: Mapping[str, str], hidden: str) -> None:
         for axis, component, half in (("x", there.x, "real"), ("y", there.y, "imag")):
@@ -829,8 +825,8 @@ class FormulaWriter:
             assert isinstance(B, str)
             assert isinstance(one, SlideEntry)
             assert isinstance(other, SlideEntry)
-            guide_1, base_1, sign_1, way_1 = self._track(one, group.p, B)
-            guide_2, base_2, sign_2, way_2 = self._track(other, group.q, B)
+            guide_1, base_1, sign_1, way_1 = self.track(one, group.p, B)
+            guide_2, base_2, sign_2, way_2 = self.track(other, group.q, B)
             gap = base_2 - base_1
             name = B
         else:
@@ -845,7 +841,7 @@ class FormulaWriter:
                 sign_2 = 1
                 base_1 = base_1 + _rotated(self.local(P, p) - self.local(inner.at, p), frame)
             else:
-                guide_1, base_1, sign_1, way_1 = self._track(outer, q, inner.at)
+                guide_1, base_1, sign_1, way_1 = self.track(outer, q, inner.at)
                 sign_2 = -1
                 base_1 = base_1 + _rotated(self.local(P, p) - _local(inner.through), frame)
             one, other = outer, inner
@@ -921,7 +917,7 @@ class FormulaWriter:
         # The body of the first slide is known by the point of it that the slide moves.
         self._finish_rod(group.p, name)
         moved = one.at if one.of == group.q else next(iter(self.linkage.bodies[group.q].points))
-        placed, base, sign, way = self._track(one, group.q, moved)
+        placed, base, sign, way = self.track(one, group.q, moved)
         hidden = f"_{moved}"
         self.hide(f"_line_{moved}", base.complex)
         self.hide(hidden, f"_line_{moved} + {'-' if sign < 0 else ''}polar({one.distance}, {way.code})")
@@ -961,7 +957,7 @@ class FormulaWriter:
     def _track_place(self, slide: SlideEntry, body: str, place: Place) -> tuple[str, Plane, int, Heading]:
         """Return how a place of a body moves that slides on a placed one; as :meth:`_track`."""
         point = slide.at if body == slide.of else next(iter(self.linkage.bodies[body].points))
-        placed, base, sign, heading = self._track(slide, body, point)
+        placed, base, sign, heading = self.track(slide, body, point)
         return (
             placed,
             base + _rotated(_local(place) - self.local(point, body), self.heading(placed)),
