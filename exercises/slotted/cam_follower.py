@@ -122,7 +122,7 @@ EXERCISE = Exercise(
         "Rr": drawn(6, 16, step=1, unit="mm"),
         "R2": drawn(lambda Rr: Rr + 4, 60, step=2, unit="mm", shown=("shape",)),
         "e": drawn(-15, 15, step=1, unit="mm"),
-        "theta": drawn(5, lambda beta, delta: 2 * beta + delta - 5, step=1, unit="deg", positive=True),
+        "theta": drawn(5, lambda beta, delta: 2 * beta + delta - 5, step=1, unit="deg", positive=False),
         "omega": drawn(5, 40, unit="rad/s", positive=True),
     },
     helpers=(lifts, tightest),
