@@ -1176,6 +1176,92 @@ class FormulaWriter:
         own = value_of(self.local(second, body), values) - value_of(self.local(first, body), values)
         return float(np.angle((places[second] - places[first]) / own))
 
+    def closure(self, group: Group) -> Chain | None:
+        """Return the loop that a pair of bodies closes, as vectors that add up to nothing; None for a group whose vectors have no names."""
+        if not isinstance(group, Dyad):
+            return None
+        inner, first, last = group.inner, group.outer_p, group.outer_q
+        if isinstance(inner, SlideEntry):
+            if not isinstance(last, str) or inner.at != first:
+                return None
+            start = self._start_of(inner, last)
+            return (
+                None
+                if start is None
+                else [*self._way(str(first)), *_back([*self._way(last), *start, self._along(inner)])]
+            )
+        ends: list[Chain] = []
+        for outer, body in ((first, group.p), (last, group.q)):
+            if isinstance(outer, str):
+                ends.append([*self._way(outer), *self._steps(body, outer, inner)])
+                continue
+            origin = outer.through_name or (self.linkage.bodies[outer.on].at if outer.on != GROUND else "")
+            start = self._start_of(outer, origin)
+            if outer.of != body or outer.at != inner or start is None:
+                return None
+            ends.append([*(self._way(origin) if origin else []), *start, self._along(outer)])
+        return [*ends[0], *_back(ends[1])]
+
+    def around(self, group: Group) -> tuple[str, ...]:
+        """Return the points that the loop of a pair of bodies passes, in order."""
+        if not isinstance(group, Dyad):
+            return ()
+        inner = group.inner.at if isinstance(group.inner, SlideEntry) else group.inner
+        ends = [
+            self._points_to(o) if isinstance(o, str) else self._points_to(o.through_name)
+            for o in (group.outer_p, group.outer_q)
+        ]
+        return tuple(dict.fromkeys([*ends[0], inner, *reversed(ends[1])]))
+
+    def _points_to(self, point: str) -> list[str]:
+        if not point:
+            return []
+        if point in self.linkage.ground:
+            return [point]
+        return [*self._points_to(self.carrier(point)[1]), point]
+
+    def _start_of(self, slide: SlideEntry, origin: str) -> Chain | None:
+        """Return the vectors from a point of the guide, or from the ground's origin, to the start of the distance along a slide."""
+        if slide.through_name:
+            return self._steps(slide.on, origin, slide.through_name) if slide.on != GROUND else []
+        place = _local(slide.through)
+        if slide.on == GROUND:
+            axes = (("x", "0.0", place.x), ("y", "pi / 2", place.y))
+            return [
+                (self._named(v, f"{a}_{slide.at}", slide.at), turn, "1", "0.0")
+                for a, turn, v in axes
+                if not v.vanishes
+            ]
+        if origin != self.linkage.bodies[slide.on].at:
+            return None
+        turns = ((place.x, 0.0), (place.y, math.pi / 2))
+        frame = self.turns[slide.on]
+        return [
+            (self._named(v, f"e_{slide.at}", slide.at), frame, "1", repr(turn))
+            for v, turn in turns
+            if not v.vanishes
+        ]
+
+    def _way(self, point: str) -> Chain:
+        """Return the vectors from the origin to a placed point, along bars."""
+        if point in self.linkage.ground:
+            return self._reached(point, [])
+        body, start = self.carrier(point)
+        return [*self._way(start), *self._steps(body, start, point)]
+
+    def _along(self, slide: SlideEntry) -> tuple[str, str, str, str]:
+        """Return the vector along a slide."""
+        frame, along = self.turns[slide.on], Heading.of(slide.along.code)
+        if frame.startswith("theta"):
+            turn = slide.along.code if along.names else repr(math.radians(along.constant))
+            return slide.distance, frame, "1", turn
+        return (
+            slide.distance,
+            slide.along.code if along.names else repr(math.radians(along.constant)),
+            "1",
+            "0.0",
+        )
+
     def _loop_text(self, loops: Sequence[Chain]) -> str:
         """Return the closures in LaTeX."""
         return "\n".join(f"$${_closure(loop, self.symbol)}$$" for loop in loops)

@@ -18,7 +18,7 @@ from coursework.system.toml_files import TomlReader, source_of, table_of
 GROUND = "ground"
 KEYS = ("title", "version", "given", "ground", "bodies", "slides", "gears", "assembly", "ask")
 ASKED = (
-    "mobility", "class", "positions", "velocities", "accelerations", "polygon", "instant_centres", "advantage", "torque", "points",
+    "mobility", "class", "positions", "equations", "velocities", "accelerations", "polygon", "instant_centres", "advantage", "torque", "points",
 )  # fmt: skip
 _NAME = re.compile(r"[A-Za-z][A-Za-z0-9]*(?:_[A-Za-z0-9]+)*\Z")
 _POINT = re.compile(r"[A-Z][0-9]*\Z")

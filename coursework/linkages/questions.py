@@ -9,6 +9,7 @@ from typing import Any
 
 from coursework.errors import nearest
 from coursework.linkages.formulas import FormulaWriter, UsualMistake, over
+from coursework.linkages.groups import Group
 from coursework.linkages.linkage_file import GROUND
 from coursework.linkages.terms import Heading, Plane, Sum
 from coursework.linkages.vectors import PolygonWriter
@@ -47,10 +48,12 @@ class QuestionWriter:
         self.questions: list[LinkageQuestion] = []
         self.mistakes: list[UsualMistake] = list(formulas.mistakes)
         self.polygons: list[PolygonWriter] = []
+        self.loops: dict[str, str] = {}  #: points that each loop passes, in LaTeX
         writers: dict[str, Callable[[Any], None]] = {
             "mobility": self._mobility,
             "class": self._class,
             "positions": self._positions,
+            "equations": self._equations,
             "velocities": self._velocities,
             "accelerations": self._accelerations,
             "polygon": self._polygon,
@@ -273,6 +276,58 @@ class QuestionWriter:
                 found=nearest(name, listed),
                 found_2=", ".join(listed),
             ),
+        )
+
+    # ----------------------------------------------------------------- equations
+
+    def _equations(self, value: Any) -> None:
+        forms = ("x", "y", "complex", "x_dot", "y_dot", "complex_dot")
+        wanted = ["x", "y"] if value is True else value
+        if not isinstance(wanted, list) or not wanted or not {*wanted} <= {*forms}:
+            raise self.linkage.refused(
+                ("ask", "equations"),
+                Message(
+                    "equations = true, or a list of {forms}; found {value!r}",
+                    forms=", ".join(forms),
+                    value=value,
+                ),
+            )
+        if any(form.endswith("_dot") for form in wanted):
+            self._needs_speed("equations")
+        closures = {g: c for g in self.formulas.groups if (c := self.formulas.closure(g)) is not None}
+        if not closures:
+            raise self.linkage.refused(
+                ("ask", "equations"),
+                Message(
+                    "no loop of this mechanism can be written: its slides go through points without a name"
+                ),
+            )
+        names = dict.fromkeys(
+            n for loop in closures.values() for v in loop for n in (v[0], v[1], v[3]) if n.isidentifier()
+        )
+        turns = [n for n in names if n.startswith("theta")]
+        lengths = [n for n in names if n not in turns]
+        moving = [n for n in lengths if n in self._slides]
+        rates = [*(t.replace("theta", "omega", 1) for t in turns), *(f"{s}_dot" for s in moving)]
+        for number, (group, loop) in enumerate(closures.items(), start=1):
+            name = f"loop_{number}"
+            self.formulas.loops[name] = loop
+            self.loops[name] = self._around(group)
+            for form in wanted:
+                variables = [*names, *(rates if form.endswith("_dot") else ())]
+                words = {"points": self._around(group), "symbols": ", ".join(f"`{v}`" for v in variables)}
+                fields = {
+                    "kind": '"equation"',
+                    "variables": repr(tuple(variables)),
+                    "parameters": repr(tuple(n for n in lengths if n not in moving)),
+                    "loop": f'"{name}"',
+                    "points": "2" if form.startswith("complex") else "1",
+                }
+                self._ask(f"{name}_{form}", f"equation_{form}", words, **fields)
+
+    def _around(self, group: Group) -> str:
+        return ", ".join(
+            f"${p[0]}_{{{p[1:]}}}$" if len(p) > 1 else f"${p}$" for p in self.formulas.around(group)
         )
 
     # --------------------------------------------------------- centres and forces

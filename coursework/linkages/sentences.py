@@ -170,6 +170,8 @@ def exercise_text(formulas: FormulaWriter, questions: QuestionWriter, lang: str)
         pieces.append(
             f"## {question.name}\n{writer.sentence('question', question.key, {**question.words, **own})}"
         )
+    for name, points in questions.loops.items():
+        pieces.append(f"## {name}\n{writer.sentence('statement', 'loop', {'points': points})}")
     joints = [p for p in linkage.points if p in linkage.pins]
     pieces.append(
         f"## figure\n{writer.sentence('statement', 'figure', {'points': ', '.join(joints), 'name': linkage.angle})}"
@@ -336,6 +338,9 @@ def solution_text(formulas: FormulaWriter, questions: QuestionWriter, lang: str)
     for quantity in formulas.quantities.values():
         if quantity.step:
             pieces.append(f"## {quantity.name}\n{_step(writer, quantity.step, quantity.words)}")
+    for question in questions.questions:
+        if question.key.startswith("equation_"):
+            pieces.append(f"## {question.name}\n{writer.sentence('step', 'equation', question.words)}")
     for mistake in questions.mistakes:
         if all(t in formulas.quantities for t in mistake.targets):
             pieces.append(

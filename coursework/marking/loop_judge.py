@@ -373,7 +373,8 @@ class LoopJudge:
             values |= {n: values[n] - step[:, k, 0] * sizes[k] for k, n in enumerate(names)}
         shares = [np.abs(values[n]) / self._sizes[n] for n in names if n not in self.angles]
         left = np.max(np.abs(gaps(values)), axis=1)
-        good = np.flatnonzero((left <= _ZERO * np.max(sizes)) & (np.min(shares, axis=0) > 0.05))
+        holds = left <= _ZERO * np.max(sizes)
+        good = np.flatnonzero(holds & (np.min(shares, axis=0) > 0.05) if shares else holds)
         if good.size < _FAULTY:
             return None
         return {n: v[good[:_FAULTY]] for n, v in values.items()}

@@ -52,3 +52,15 @@ def test_a_vector_laid_off_backwards_is_named_and_costs_its_end_alone(point, mis
 def test_the_mechanisms_to_start_from_pass_their_check(name):
     (report,) = check_all(course(), [name], 20, lambda *_: None)
     assert not report.failures
+
+
+def test_equations_of_a_loop_are_right_in_any_form_and_a_missing_bar_is_named():
+    variant = course()["slotted_ram"].variant(1)
+    right = {
+        "loop_1_x": "s*cos(theta4) = r2*cos(theta2) + e*sin(theta4)",
+        "loop_2_y": "h - r6*sin(theta5) - r5*sin(theta4) = 0",
+    }
+    marks = mark(variant, right)
+    assert {n: marks[n].points for n in right} == dict.fromkeys(right, 1.0)
+    marks = mark(variant, {"loop_2_x": "r5*cos(theta4) + s_E = 0"})
+    assert (marks["loop_2_x"].points, marks["loop_2_x"].verdict) == (0.0, "slip:link_missing")
