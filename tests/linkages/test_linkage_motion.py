@@ -20,7 +20,11 @@ def _turns(exercise, given):
 
 
 def _distances(exercise):
-    return {n.removesuffix("_dot") for n in exercise.solution.graph.names if n.endswith("_dot")}
+    return {
+        n.removesuffix("_dot")
+        for n in exercise.solution.graph.names
+        if n.endswith("_dot") and not n.startswith("loop_")
+    }
 
 
 def _rate(name, order):
