@@ -52,7 +52,7 @@ _SOLUTION_IMPORTS = """from coursework.figures.polygons import (
 )
 from coursework.mechanics import Body, Gear, Load, Mechanism, Slide
 from coursework.marking.drawn_polygons import DrawingParts, met, off_both, scale_for, to_paper, turned, verdicts
-from coursework.solution import judge, mistake, stable, told_after
+from coursework.solution import Moving, judge, mistake, stable, told_after
 """
 
 
@@ -253,6 +253,7 @@ class CompiledLinkage:
     def solution(self) -> str:
         """Source of the solution's module."""
         questions, formulas = self.questions, self.formulas
+        motion = self._motion()  # which adds the rates of points that nothing else needs
         quantities = formulas.quantities.values()
         asked = {q.name for q in questions.questions}
         units = {q.name: q.unit for q in quantities if not q.name.startswith("_") and q.name not in asked}
@@ -272,6 +273,7 @@ class CompiledLinkage:
             *(q.source for q in quantities),
             *(m.source for m in questions.mistakes if all(t in formulas.quantities for t in m.targets)),
             self._polygons(),
+            motion,
             self._residual(),
         ]
         return "\n\n\n".join(p for p in pieces if p)
@@ -290,6 +292,21 @@ class CompiledLinkage:
         listed = ", ".join(p.reference(given, p.scale) for p in polygons)
         stated = f"def polygons({', '.join([*given, *(p.scale for p in polygons)])}):\n    return ({listed},)"
         return "\n\n\n".join([*(p.function() for p in polygons), *(p.judge(given) for p in polygons), stated])
+
+    def _motion(self) -> str:
+        """Return the code of the points that move, with their velocities and accelerations where the driver has a speed."""
+        formulas, linkage = self.formulas, self.linkage
+        pieces = []
+        for point in linkage.points:
+            if point in linkage.ground:
+                continue
+            vectors = [formulas.at(point)]
+            if linkage.speed:
+                vectors += [formulas.velocity(point), formulas.acceleration(point)]
+            name = point if len(point) == 1 else f"{point[0]}_{point[1:]}"
+            pieces.append(f"{name!r}: Moving({', '.join(v.complex for v in vectors)})")
+        code = "{" + ", ".join(pieces) + "}"
+        return f"def motion({', '.join(names_in(code))}):\n    return {code}" if pieces else ""
 
     def _residual(self) -> str:
         """Return the code of the residual: joints and their rates, from the frames of the bodies."""

@@ -34,7 +34,7 @@ Chain: TypeAlias = list[tuple[str, str, str, str]]  #: vectors as code: length, 
 
 FUNCTIONS = frozenset(
     "sin cos tan sqrt abs atan2 acos asin polar angle wrap np dyads dict "
-    "Figure line link ground_pivot pin point slot_link slider rail circle angle_mark max complex Side normal tangential turning polygon_of_velocities polygon_of_accelerations FourBar SliderCrank Degrees from_radians scale_for to_paper turned met off_both verdicts DrawingParts".split()
+    "Figure line link ground_pivot pin point slot_link slider rail circle angle_mark max complex Side normal tangential turning polygon_of_velocities polygon_of_accelerations FourBar SliderCrank Degrees from_radians scale_for to_paper turned met off_both verdicts DrawingParts Moving".split()
 )
 _OTHERS = ("pi", "min", "hypot", "result")  #: names that code or an expression uses besides
 _MODES = {"left": "right", "right": "left", "ahead": "behind", "behind": "ahead"}
