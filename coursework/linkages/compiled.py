@@ -29,6 +29,7 @@ from coursework.linkages.questions import QuestionWriter
 from coursework.linkages.sentences import exercise_text, solution_text, spoken
 from coursework.linkages.vectors import PAPER_MM
 from coursework.messages import Message
+from coursework.model import symbol_of
 
 _IMPORTS = """\
 import numpy as np
@@ -107,6 +108,9 @@ class CompiledLinkage:
         parts = [f"        {q.source}," for q in self.questions.questions]
         symbols = {
             n: q.symbol for n, q in self.formulas.quantities.items() if q.symbol and not n.startswith("_")
+        }
+        symbols |= {
+            n: self.formulas.symbol(n) for n in linkage.given if self.formulas.symbol(n) != symbol_of(n)
         }
         symbols |= {
             f"mode_{p}": rf"\mathrm{{mode}}_{{{p}}}" for p, e in self.formulas.modes.items() if e.is_drawn

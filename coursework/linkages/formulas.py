@@ -9,6 +9,7 @@ from __future__ import annotations
 import ast
 import keyword
 import math
+import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, TypeAlias
@@ -1267,9 +1268,20 @@ class FormulaWriter:
         return "\n".join(f"$${_closure(loop, self.symbol)}$$" for loop in loops)
 
     def symbol(self, name: str) -> str:
-        """Return the LaTeX of a quantity."""
+        """Return the LaTeX of a quantity: a length named by two points, such as ``AC``, is written like the segment."""
         own = self.quantities.get(name)
-        return own.symbol if own is not None and own.symbol else symbol_of(name)
+        if own is not None and own.symbol:
+            return own.symbol
+        entry = self.linkage.given.get(name)
+        ends = re.fullmatch(r"([A-Z])(\d*)([A-Z])(\d*)", name)
+        if entry is not None and entry.unit == "mm" and ends:
+            first, number, last, other = ends.groups()
+            return (
+                f"{first}_{number}" * bool(number)
+                + first * (not number)
+                + (f" {last}_{other}" if other else last)
+            )
+        return symbol_of(name)
 
     def _reachable(self, body: str) -> str:
         """Return a point of a body that lies on a body placed before it."""
