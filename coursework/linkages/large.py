@@ -9,6 +9,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from coursework.degrees import from_radians
+from coursework.errors import CannotAssemble
 from coursework.kinematics.chains import ClosedChain, Vector
 from coursework.quantities.graph import Graph
 
@@ -84,8 +85,10 @@ class LargeGroup:
         """
         target = given[self.driver]
         way = (np.asarray(target, dtype=float) - self.near_angle + 180.0) % 360.0 - 180.0
-        if any(map(np.ndim, given.values())):
+        if any(np.ndim(v) for n, v in given.items() if n != self.driver):
             start = self._followed(given, way)
+        elif np.ndim(way):
+            start = self._passed_each(given, way)
         else:
             start = self._passed(given, float(way))
         known = self._known(given)
@@ -100,6 +103,22 @@ class LargeGroup:
             angle = self.near_angle + way * number / count
             start = self.chain.solve(self._known({**given, self.driver: angle}), start).values
         return start
+
+    def _passed_each(self, given: Mapping[str, Any], way: np.ndarray) -> Mapping[str, Any]:
+        """Return the poses at the last whole step before each of several positions; NaN beyond a place that cannot be passed."""
+        steps = np.where(np.isfinite(way), np.trunc(way / _STEP), 0).astype(int)
+        poses: dict[int, Mapping[str, Any]] = {}
+        for sign in (1, -1):
+            for number in range(int(np.max(sign * steps, initial=0)) + 1):
+                try:
+                    poses[sign * number] = self._passed(given, sign * number * _STEP)
+                except CannotAssemble:
+                    break
+        nowhere = dict.fromkeys(self.near, np.nan)
+        return {
+            n: np.reshape([poses.get(k, nowhere)[n] for k in steps.ravel().tolist()], steps.shape)
+            for n in self.near
+        }
 
     def _passed(self, given: Mapping[str, Any], way: float) -> Mapping[str, Any]:
         """Return the pose at the last whole step before a position; steps of one set of lengths are remembered."""
