@@ -118,3 +118,14 @@ def test_a_changed_file_is_compiled_anew(tmp_path):
     before = compiled(path).linkage.given["r1"].value
     path.write_text(TOGGLE.replace('r1 = "180 mm"', 'r1 = "190 mm"'), "utf-8")
     assert (before, compiled(path).linkage.given["r1"].value) == (180.0, 190.0)
+
+
+def test_words_of_ones_own_replace_the_generated_ones(tmp_path):
+    folder = tmp_path / "course"
+    shutil.copytree(FOLDER, folder)
+    generated = compiled(folder / "exercises" / "toggle.toml").text("exercises", "en")
+    own = folder / "exercises" / "toggle.en.md.j2"
+    own.write_text(generated.replace("# Toggle", "# The press in hall 3", 1), "utf-8")
+    exercise = open_course(folder)["toggle"]
+    assert (exercise.title("en"), exercise.title("fr")) == ("The press in hall 3", "Genouillère")
+    assert exercise.variant(1, "en").text.title == "The press in hall 3"
