@@ -15,8 +15,8 @@ from coursework.authoring.scaffold import check_name, course_files
 from coursework.course.exercise import CourseExercise
 from coursework.errors import BadInput, nearest, unknown
 from coursework.linkages.compiled import CompiledLinkage, compiled
-from coursework.linkages.formulas import value_of
 from coursework.linkages.groups import Dyad, Wheel
+from coursework.linkages.points import value_of
 from coursework.messages import Message
 from coursework.structure.assour import roman
 from coursework.structure.grashof import linkage_type

@@ -15,7 +15,7 @@ from coursework.errors import BadInput, CourseworkError
 from coursework.linkages.drawing import FigureWriter
 from coursework.linkages.exact_loops import keep_digits
 from coursework.linkages.expressions import ExpressionReader, QuantityExpression
-from coursework.linkages.formulas import FormulaWriter, Quantity, names_in, vector_code
+from coursework.linkages.formulas import FormulaWriter
 from coursework.linkages.groups import Dyad
 from coursework.linkages.linkage_file import (
     GROUND,
@@ -25,6 +25,8 @@ from coursework.linkages.linkage_file import (
     author_faults,
     read_linkage,
 )
+from coursework.linkages.loop_chains import vector_code
+from coursework.linkages.points import Quantity, names_in
 from coursework.linkages.questions import QuestionWriter
 from coursework.linkages.sentences import exercise_text, solution_text, spoken
 from coursework.linkages.vectors import PAPER_MM

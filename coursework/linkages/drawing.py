@@ -5,8 +5,9 @@ from __future__ import annotations
 from cmath import phase
 from itertools import pairwise
 
-from coursework.linkages.formulas import FormulaWriter, middle_value
+from coursework.linkages.formulas import FormulaWriter
 from coursework.linkages.linkage_file import GROUND, SlideEntry
+from coursework.linkages.points import middle_value
 from coursework.linkages.terms import Heading
 
 
