@@ -192,7 +192,7 @@ def fillings(site: Filled) -> dict[str, Filling]:
     anybodys = (
         "/", "/service-worker.js", "/offline", "/accessibility", "/language", "/who", "/sign-in", "/sign-out", "/account", "/account/data", "/practice", "/progress",
         "/progress/progress.json", "/assignments", "/desk", "/desk/issued", "/desk/people", "/desk/people/add", "/desk/people/add-staff", "/desk/audit",
-        "/desk/receipts", "/desk/lti", "/desk/assignments", "/desk/assignments/new",
+        "/desk/receipts", "/desk/lti", "/mechanisms", "/desk/assignments", "/desk/assignments/new",
     )  # fmt: skip
     of_class = (
         "", "/figure", "/queue", "/queue/watch", "/news", "/student", "/questions", "/question", "/report", "/report.pdf", "/files",
@@ -213,6 +213,7 @@ def fillings(site: Filled) -> dict[str, Filling]:
         "/practice/{exercise}": practice,
         "/lessons/{lesson}": Filling({"lesson": "plane_mechanisms"}),
         "/lessons/{lesson}/figures/{figure}": Filling({"lesson": "plane_mechanisms", "figure": "none.svg"}),
+        "/mechanisms/{name}": Filling({"name": "new"}),
         "/explore/{exercise}": Filling({"exercise": "four_bar_motion"}),
         **{
             f"/practice/{{exercise}}/{{seed}}{end}": practice

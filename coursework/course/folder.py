@@ -127,10 +127,10 @@ class Folder:
                     places = " and ".join(sorted(self.relative(p) for p in (modules[name], path)))
                     raise BadCourse(f"{name} stands twice: {places}; keep one of them, or rename it")
                 modules[name] = path
-        return modules if kind == "exercises" else {**self._mechanisms, **modules}
+        return modules if kind == "exercises" else {**self.mechanisms, **modules}
 
     @property
-    def _mechanisms(self) -> dict[str, Path]:
+    def mechanisms(self) -> dict[str, Path]:
         """Return the mechanisms' files of ``exercises`` by name."""
         return {n: p for n, p in self._modules("exercises").items() if p.suffix == MECHANISM}
 

@@ -33,6 +33,7 @@ from coursework.site.frame.settings import Site
 from coursework.site.frame.threads import PAGES_AT_ONCE
 from coursework.site.lessons import lessons_page
 from coursework.site.lti import connecting, links_page
+from coursework.site.mechanisms import mechanisms_page
 from coursework.site.papers import assignments
 from coursework.site.people import accounts, home, people_page, privacy, scrubbing
 from coursework.site.practice import explore_page, practice_page, progress_page
@@ -56,6 +57,7 @@ ROUTES: tuple[Route, ...] = (
     *queue.ROUTES,
     *assignments.ROUTES,
     *publishing.ROUTES,
+    *mechanisms_page.ROUTES,
     *printing.ROUTES,
     *class_page.ROUTES,
     *student_page.ROUTES,

@@ -324,6 +324,7 @@ class ResourceLimits(NamedTuple):
     seconds: float
     memory: int
     niceness: int = _NICE  #: 0 where somebody waits for the result
+    is_warm: bool = False  #: it begins with the function's module loaded: in a tenth of the time, for memory that stays taken
 
 
 class Exceeded(CourseworkError):
@@ -357,9 +358,9 @@ def confined(means: ResourceLimits, function: Callable[..., Any], *arguments: An
     """
     if not others_can_start():
         return function(*arguments)
-    spawn = multiprocessing.get_context("spawn")
-    answers, answer = spawn.Pipe(duplex=False)
-    process = spawn.Process(
+    context = _context(function.__module__ if means.is_warm else "")
+    answers, answer = context.Pipe(duplex=False)
+    process = context.Process(
         target=_do_confined, args=(answer, means, pickle.dumps((function, arguments))), daemon=True
     )
     with answers:
@@ -376,6 +377,16 @@ def confined(means: ResourceLimits, function: Callable[..., Any], *arguments: An
     if is_done:
         return value
     raise value
+
+
+def _context(module: str) -> Any:
+    """Return the way in which a process begins: as a copy of one that has loaded a module, where a module is named and the
+    system can."""
+    if not module or "forkserver" not in multiprocessing.get_all_start_methods():
+        return multiprocessing.get_context("spawn")
+    context = multiprocessing.get_context("forkserver")
+    context.set_forkserver_preload([module])
+    return context
 
 
 def _answered(answers: Connection, process: BaseProcess, means: ResourceLimits) -> tuple[bool, Any, float]:

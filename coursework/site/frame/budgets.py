@@ -59,6 +59,11 @@ DESK_FILE = DESK_FILES._replace(
     name="desk_file", largest=4 * MEGABYTE, reading=ResourceLimits(20.0, 512 * MEGABYTE)
 )
 
+#: The text of a mechanism's file, compiled at each change.
+MECHANISMS = Budget(
+    "mechanisms", 256 * KILOBYTE, 300, 2, reading=ResourceLimits(6.0, 384 * MEGABYTE, 0, is_warm=True), readings=2
+)  # fmt: skip
+
 MOST_ROWS = 800  #: of a student's file of answers
 
 

@@ -22,6 +22,7 @@ from coursework.language.words import words
 from coursework.scenes.exploration import Curve, Exploration, Parameter, parameters
 from coursework.site.frame.pool import FIRST_SEED
 from coursework.site.frame.requests import HTTPException, Request, Route
+from coursework.site.mechanisms.mechanisms_page import address_of
 from coursework.site.papers.assignment_state import published_states
 
 SEED = (
@@ -51,7 +52,7 @@ def explore(request: Request) -> Response:
         "exercise": name, "explore_title": typical.text.title, "explored": shown, "is_piece": request.is_fragment,
         "rows": [_row(request, typical, p, values[p.name]) for p in choices],
         "refused": [typical.exercise.symbol(n) for n, value in read.items() if value is None],
-        "address": f"/explore/{name}",
+        "address": f"/explore/{name}", "mechanism": address_of(request, name),
     }  # fmt: skip
     return request.render("site/student/explore", **names)
 

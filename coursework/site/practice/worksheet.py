@@ -52,6 +52,7 @@ from coursework.site.lessons.lesson_content import (
     linked_lessons,
     section_links,
 )
+from coursework.site.mechanisms.mechanisms_page import address_of
 from coursework.site.practice import explore_page
 
 if TYPE_CHECKING:
@@ -134,6 +135,11 @@ class Worksheet:
     @property
     def address(self) -> str:
         return f"/{self.name}"
+
+    @property
+    def mechanism(self) -> str:
+        """Address of the page of its mechanism, for staff; empty if no file states one."""
+        return address_of(self.request, self.exercise)
 
     @property
     def explored(self) -> str:

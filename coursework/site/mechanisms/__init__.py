@@ -1,0 +1,1 @@
+"""Mechanisms' files, written and drawn on the site."""

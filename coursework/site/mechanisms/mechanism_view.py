@@ -1,0 +1,167 @@
+"""What a mechanism's file makes, for its page: figure, motion, report and variants; made in a process of limited means."""
+
+from __future__ import annotations
+
+import re
+import tempfile
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from markupsafe import Markup, escape
+
+from coursework.api import open_course
+from coursework.authoring.linkage_editing import lengths, questions, with_lengths, with_questions
+from coursework.authoring.linkage_files import mechanism_alone, report
+from coursework.course.folder import course_folder
+from coursework.errors import CourseworkError
+from coursework.language.words import words
+from coursework.messages import localised, messages_in
+from coursework.model import symbol_of
+from coursework.rendering.displayed import DisplayedAnimation
+from coursework.rendering.environment import render
+from coursework.rendering.html import environment_of
+from coursework.rendering.keeping import in_script
+from coursework.scenes.animation import Animation
+from coursework.sheets.answer_sheet import answer_sheet
+
+_VARIANTS = 3
+_LONGEST = 400  #: characters of a fault
+
+
+@dataclass(frozen=True)
+class Choices:
+    """Check boxes of the page: lengths that vary, and questions as ``key name``."""
+
+    varying: tuple[str, ...]
+    asked: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class MechanismView:
+    """What a text makes as a piece of its page; or what is wrong with it, with the line that it names."""
+
+    text: str
+    html: str = ""
+    fault: str = ""
+    line: str = ""
+
+
+def mechanism_view(text: str, name: str, lang: str, choices: Choices | None = None) -> MechanismView:
+    """Return what the text of a mechanism's file makes.
+
+    Parameters
+    ----------
+    text
+        TOML.
+    name
+        Name of the exercise, which decides what its variants draw.
+    lang
+        Language of the page.
+    choices
+        Check boxes that change the text before; None to leave it.
+
+    Returns
+    -------
+    The piece of the page; that of the fault if the text makes no exercise.
+    """
+    with tempfile.TemporaryDirectory() as place, messages_in(lang), np.errstate(all="ignore"):
+        path = Path(place) / f"{name}.toml"
+        try:
+            path.write_text(text, "utf-8")
+            if choices is not None:
+                text = _changed(path, text, choices)
+                path.write_text(text, "utf-8")
+            return MechanismView(text, _html(_found(path, text, lang), lang))
+        except CourseworkError as error:
+            fault = " ".join(localised(error, lang).replace(str(path), f"{name}.toml").split())[:_LONGEST]
+        except (ArithmeticError, TypeError, ValueError, RecursionError) as error:
+            fault = f"{name}.toml: {type(error).__name__}"
+        return MechanismView(text, fault=fault, line=_line(text, fault))
+
+
+def _html(found: Mapping[str, Any], lang: str) -> Markup:
+    names = {
+        "lang": lang,
+        "words": words(lang),
+        "said": words(lang, "site")["mechanisms"],
+        "level": 4,
+        **found,
+    }
+    folders = course_folder(None).template_folders
+    return Markup(render(environment_of(folders, lang), "site/instructor/_mechanism_view.html.j2", names))
+
+
+def _changed(path: Path, text: str, choices: Choices) -> str:
+    with mechanism_alone(path, open_course) as (_, made):
+        text = with_lengths(text, [c.name for c in lengths(text, made)], choices.varying)
+        return with_questions(text, made, choices.asked)
+
+
+def _line(text: str, fault: str) -> str:
+    """Return the line of the text that a fault names."""
+    number = re.search(r"(?:line|ligne) (\d+)", fault)
+    lines = text.split("\n")
+    return lines[int(number[1]) - 1][:200] if number and 0 < int(number[1]) <= len(lines) else ""
+
+
+def _found(path: Path, text: str, lang: str) -> dict[str, Any]:
+    with mechanism_alone(path, open_course) as (exercise, made):
+        variants = [exercise.variant(seed, lang) for seed in range(_VARIANTS)]
+        sheets = [answer_sheet(variant, polygons=False) for variant in variants]
+        rows = [
+            (localised(row["property"], lang), localised(row["value"], lang))
+            for row in report(exercise, made, 0)
+        ]
+        return {
+            "rows": rows,
+            "moving": _moving(DisplayedAnimation(variants[0]), words(lang, "site")["mechanisms"]["figure"]),
+            "sheets": [(sheet, sheet.handout) for sheet in sheets],
+            "lengths": lengths(text, made),
+            "questions": questions(made),
+            "symbols": {
+                n: exercise.symbol(n) if n in made.linkage.given else _symbol(n)
+                for n in (*made.linkage.given, *(c.name for able in questions(made).values() for c in able))
+            },
+        }
+
+
+def _symbol(name: str) -> str:
+    """Return a quantity that can be asked in LaTeX."""
+    for end, mark in (("_ddot", "ddot"), ("_dot", "dot")):
+        if name.endswith(end):
+            return rf"\{mark}{{{symbol_of(name.removesuffix(end))}}}"
+    return symbol_of(name)
+
+
+def _moving(animation: Animation, label: str) -> dict[str, Any]:
+    """Return the figure and, for a script, where its lines and marks are at each instant."""
+    drawing = animation.drawing(())
+    lines, moving = [], []
+    for track in drawing.tracks:
+        more = ""
+        if track.moves:
+            more = f' data-moves="{"transform" if track.mark else "d"}"'
+            moving.append(track)
+        lines.append(track.svg(animation.first, more))
+    count = len(animation.angles)
+    frames = [
+        [f"translate({t.value(k)})" if t.mark else str(t.value(k)) for t in moving] for k in range(count)
+    ]
+    crank = [drawing.on_paper(p) for p in animation.crank] if animation.crank else []
+    width, height = (f"{x:.6g}" for x in drawing.size)
+    svg = (
+        f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width} {height}" role="img" aria-label="{escape(label)}"><g fill="none" stroke="#000" '
+        f'stroke-linecap="round" stroke-linejoin="round">{"".join(lines)}</g></svg>'
+    )
+    pivot, way = (
+        ([float(x) for x in crank[0]], [[float(x) for x in p] for p in crank[1]]) if crank else ([], [])
+    )
+    return {
+        "svg": Markup(svg),
+        "count": count,
+        "first": animation.first,
+        "data": in_script({"frames": frames, "pivot": pivot, "way": way}),
+    }
