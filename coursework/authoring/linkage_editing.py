@@ -15,21 +15,21 @@ _FIXED = r'^(\s*{}\s*=\s*)"([\d.]+) mm"'
 _RANGE = r'^(\s*{}\s*=\s*)\{{\s*from\s*=\s*"([\d.]+) mm",\s*to\s*=\s*"([\d.]+) mm"[^}}]*\}}'
 
 
-class Choice(NamedTuple):
+class CheckBox(NamedTuple):
     """Question or length that can be chosen: its name, and whether it is."""
 
     name: str
     is_chosen: bool
 
 
-def lengths(text: str, made: CompiledLinkage) -> list[Choice]:
+def lengths(text: str, made: CompiledLinkage) -> list[CheckBox]:
     """Return the given lengths that a line of the text states by numbers, and whether they vary."""
     found = []
     for name, entry in made.linkage.given.items():
         if entry.unit == "mm":
             is_range = re.search(_RANGE.format(re.escape(name)), text, re.MULTILINE) is not None
             if is_range or re.search(_FIXED.format(re.escape(name)), text, re.MULTILINE):
-                found.append(Choice(name, is_range))
+                found.append(CheckBox(name, is_range))
     return found
 
 
@@ -70,7 +70,7 @@ def _middle(match: re.Match[str]) -> str:
     return f'{match[1]}"{middle or STEP:g} mm"'
 
 
-def questions(made: CompiledLinkage) -> dict[str, list[Choice]]:
+def questions(made: CompiledLinkage) -> dict[str, list[CheckBox]]:
     """Return what can be asked of a mechanism, by key of ``[ask]``, and what is."""
     linkage, formulas = made.linkage, made.formulas
     turns = [
@@ -101,7 +101,7 @@ def questions(made: CompiledLinkage) -> dict[str, list[Choice]]:
         turning = [b for b in linkage.bodies if formulas.turns[b] in turns]
         able["advantage"] = ("advantage",) if turning else ()
     return {
-        key: [Choice(name, _is_asked(linkage.ask, key, name)) for name in names]
+        key: [CheckBox(name, _is_asked(linkage.ask, key, name)) for name in names]
         for key, names in able.items()
         if names
     }

@@ -61,7 +61,7 @@ WHO = {
     "/desk/{assignment:int}/scans": (ASSISTANTS, INSTRUCTORS),
     **{f"/desk/{{assignment:int}}{end}": (INSTRUCTORS, INSTRUCTORS) for end in ("/answers", "/roster", "/regrade")},
     "/desk/{assignment:int}/changes.csv": (INSTRUCTORS, None), "/desk/issued": (INSTRUCTORS, INSTRUCTORS),
-    "/desk/lti": (INSTRUCTORS, None), "/desk/assignments": (INSTRUCTORS, None),
+    "/desk/lti": (INSTRUCTORS, None), "/mechanisms": (INSTRUCTORS, None), "/mechanisms/{name}": (INSTRUCTORS, INSTRUCTORS), "/desk/assignments": (INSTRUCTORS, None),
     "/desk/assignments/new": (INSTRUCTORS, INSTRUCTORS), "/desk/assignments/dealing/{token}": (INSTRUCTORS, None),
     **{
         f"/desk/assignments/{{number:int}}{end}": (INSTRUCTORS, None)

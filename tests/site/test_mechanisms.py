@@ -14,7 +14,7 @@ from coursework.database.assignments import put_issued
 from coursework.language.words import words
 from coursework.site.application import application
 from coursework.site.frame.settings import Site
-from coursework.site.mechanisms.mechanism_view import Choices, mechanism_view
+from coursework.site.mechanisms.mechanism_view import CheckedBoxes, mechanism_view
 
 TEXT = words("en", "site")["mechanisms"]["start"]
 
@@ -56,12 +56,12 @@ def test_from_nothing_to_a_marked_exercise(own):
 def test_a_changed_file_is_what_the_site_shows_next(own):
     staff = own.browser(TEACHER)
     sent(staff, do="save", name="mine")
-    before = own.site.variant("mine", 5, "en").given["r1"]
+    before = own.site.variant("mine", 5, "en").given["xC"]
     assert (
         sent(staff, "mine", do="save", name="mine", text=TEXT.replace('"200 mm"', '"210 mm"')).status_code
         == 303
     )
-    assert (before, own.site.variant("mine", 5, "en").given["r1"]) == (200, 210)
+    assert (before, own.site.variant("mine", 5, "en").given["xC"]) == (200, 210)
 
 
 NAMES = [
@@ -108,7 +108,7 @@ def test_an_address_shows_no_other_file(path, tmp_path_factory):
 
 def test_what_is_wrong_is_not_saved_and_named_with_its_line(own):
     staff = own.browser(TEACHER)
-    wrong = TEXT.replace('r3 = "180 mm"', 'r3 = "180 N"')
+    wrong = TEXT.replace('r3 = "175 mm"', 'r3 = "175 N"')
     reply = sent(staff, do="save", name="mine", text=wrong)
     assert (reply.status_code, (own.folder / "mine.toml").exists()) == (422, False)
     assert re.search(r"mine\.toml, line \d+: ", reply.text)
@@ -166,7 +166,7 @@ def test_staff_find_the_mechanism_from_its_exercise(own):
 def test_boxes_write_what_they_say(name, tmp_path_factory):
     text = (LINKAGES / "exercises" / f"{name}.toml").read_text("utf-8")
     asked = tomllib.loads(text)["ask"].get("positions", ["theta3"])[0]
-    view = mechanism_view(text, name, "en", Choices((), ("mobility mobility", f"positions {asked}")))
+    view = mechanism_view(text, name, "en", CheckedBoxes((), ("mobility mobility", f"positions {asked}")))
     assert view.fault == ""
     now = tomllib.loads(view.text)
     assert {k: v for k, v in now["ask"].items() if k != "torque"} == {"mobility": True, "positions": [asked]}
@@ -176,7 +176,7 @@ def test_boxes_write_what_they_say(name, tmp_path_factory):
 
 
 def test_a_length_varies_around_its_value_and_back():
-    view = mechanism_view(TEXT, "mine", "en", Choices(("r3",), ("positions theta3",)))
-    assert tomllib.loads(view.text)["given"]["r3"] == {"from": "145 mm", "to": "215 mm", "step": "5 mm"}
-    again = mechanism_view(view.text, "mine", "en", Choices((), ("positions theta3",)))
-    assert tomllib.loads(again.text)["given"]["r3"] == "180 mm"
+    view = mechanism_view(TEXT, "mine", "en", CheckedBoxes(("r3",), ("positions theta3",)))
+    assert tomllib.loads(view.text)["given"]["r3"] == {"from": "140 mm", "to": "210 mm", "step": "5 mm"}
+    again = mechanism_view(view.text, "mine", "en", CheckedBoxes((), ("positions theta3",)))
+    assert tomllib.loads(again.text)["given"]["r3"] == "175 mm"

@@ -1,4 +1,4 @@
-"""What a mechanism's file makes, for its page: figure, motion, report and variants; made in a process of limited means."""
+"""View of a mechanism's file for its page: figure, motion, report and variants, in a process of limited means."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ _LONGEST = 400  #: characters of a fault
 
 
 @dataclass(frozen=True)
-class Choices:
+class CheckedBoxes:
     """Check boxes of the page: lengths that vary, and questions as ``key name``."""
 
     varying: tuple[str, ...]
@@ -41,7 +41,7 @@ class Choices:
 
 @dataclass(frozen=True)
 class MechanismView:
-    """What a text makes as a piece of its page; or what is wrong with it, with the line that it names."""
+    """Piece of a page about a text; or the fault of the text, with its line."""
 
     text: str
     html: str = ""
@@ -49,7 +49,7 @@ class MechanismView:
     line: str = ""
 
 
-def mechanism_view(text: str, name: str, lang: str, choices: Choices | None = None) -> MechanismView:
+def mechanism_view(text: str, name: str, lang: str, choices: CheckedBoxes | None = None) -> MechanismView:
     """Return what the text of a mechanism's file makes.
 
     Parameters
@@ -94,7 +94,7 @@ def _html(found: Mapping[str, Any], lang: str) -> Markup:
     return Markup(render(environment_of(folders, lang), "site/instructor/_mechanism_view.html.j2", names))
 
 
-def _changed(path: Path, text: str, choices: Choices) -> str:
+def _changed(path: Path, text: str, choices: CheckedBoxes) -> str:
     with mechanism_alone(path, open_course) as (_, made):
         text = with_lengths(text, [c.name for c in lengths(text, made)], choices.varying)
         return with_questions(text, made, choices.asked)

@@ -22,7 +22,7 @@ from coursework.site.frame.budgets import MECHANISMS, read_apart
 from coursework.site.frame.requests import HTTPException, Request, Route
 from coursework.site.frame.responses import Download, redirect
 from coursework.site.frame.settings import Site
-from coursework.site.mechanisms.mechanism_view import Choices, MechanismView, mechanism_view
+from coursework.site.mechanisms.mechanism_view import CheckedBoxes, MechanismView, mechanism_view
 from coursework.system.writing import write_whole
 
 NEW = "new"  #: address of a mechanism without a name
@@ -76,7 +76,7 @@ def mechanism(request: Request) -> Response:
         return Download(text.encode(), "application/toml", f"{_usable(chosen) or 'mechanism'}{MECHANISM}")
     choices = None
     if action == "apply":
-        choices = Choices(tuple(form.texts.get("varies", ())), tuple(form.texts.get("asks", ())))
+        choices = CheckedBoxes(tuple(form.texts.get("varies", ())), tuple(form.texts.get("asks", ())))
     view = _view(request, text, _usable(chosen) or "mechanism", choices)
     if action == "save":
         problem = view.fault or _save(request, name, chosen, text)
@@ -120,7 +120,7 @@ def _usable(name: str) -> str:
     return name if len(name) <= _LONGEST else ""
 
 
-def _view(request: Request, text: str, name: str, choices: Choices | None = None) -> MechanismView:
+def _view(request: Request, text: str, name: str, choices: CheckedBoxes | None = None) -> MechanismView:
     said = request.words["mechanisms"]
     key = ("mechanism", request.lang, name, text, choices)
 
