@@ -5,30 +5,16 @@ import re
 import tomllib
 
 import pytest
-from site_people import HOME, TEACHER, ZOE, Class
+from site_own_course import OwnCourse
+from site_people import TEACHER, ZOE
 from tables import each_row
 
-from coursework import open_course
-from coursework.authoring.linkage_files import LINKAGES, new_linkage
+from coursework.authoring.linkage_files import LINKAGES
 from coursework.database.assignments import put_issued
 from coursework.language.words import words
-from coursework.site.application import application
-from coursework.site.frame.settings import Site
 from coursework.site.mechanisms.mechanism_view import CheckedBoxes, mechanism_view
 
 TEXT = words("en", "site")["mechanisms"]["start"]
-
-
-class OwnCourse(Class):
-    """A class whose course is a folder of its own, with one mechanism."""
-
-    def __init__(self, folder):
-        new_linkage(folder / "course", "toggle", "toggle", ["fr", "en"])
-        super().__init__(f"sqlite:///{folder}/site.db")
-        course = open_course(folder / "course")
-        self.site = Site(course, self.site.store, self.site.entrance, HOME, lambda: self.at)
-        self.app = application(self.site)
-        self.folder = folder / "course" / "exercises"
 
 
 @pytest.fixture
@@ -142,6 +128,7 @@ def test_a_script_in_a_file_is_text_on_its_page(own):
     assert "<script>alert" not in reply.text
 
 
+@pytest.mark.e2e  # it takes the processor time that a text may take
 def test_endless_work_is_stopped(own, own_process):
     many = "\n".join(f'q{k} = {{ from = "1 mm", to = "9 mm", step = "0.000001 mm" }}' for k in range(90))
     impossible = ", ".join(f'"q{k} * q{k + 1} < -1 mm * 1 mm"' for k in range(80))

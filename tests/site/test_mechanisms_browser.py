@@ -1,0 +1,123 @@
+"""A teacher who does not program draws a linkage in Chromium, by touch or with a keyboard alone, and has an exercise."""
+
+import math
+import time
+
+import pytest
+from site_browser import chromium, low, serious, served, too_wide, watched, windows
+from site_own_course import OwnCourse
+from site_people import TEACHER
+
+pytestmark = pytest.mark.e2e
+
+
+@pytest.fixture(scope="module")
+def desk(tmp_path_factory):
+    class_ = OwnCourse(tmp_path_factory.mktemp("site"))
+    with served(class_) as address, chromium() as browser:
+        yield class_, address, browser
+
+
+@pytest.fixture
+def window(desk):
+    with windows(desk, TEACHER) as open_:
+        yield open_
+
+
+#: A slider-crank: crank of 50 mm, bar of about 180 mm, the slide 20 mm above the pivot; tools with the places that are tapped, mm.
+SLIDER_CRANK = (
+    ("ground", (120, 100)), ("bar", (120, 100), (150, 140), (150, 140), (325, 120)), ("slide", (325, 120), (440, 120)),
+)  # fmt: skip
+
+
+def tapped(page, x, y):
+    surface = page.locator(".draw svg")
+    surface.scroll_into_view_if_needed()
+    scale = surface.bounding_box()["width"] / 480
+    surface.tap(position={"x": x * scale, "y": (320 - y) * scale})
+
+
+def typed(page, x, y):
+    for box, value in (("x", x), ("y", y)):
+        page.fill(f"[data-{box}]", str(value))
+    page.press("[data-y]", "Enter")
+
+
+def drawn(page, put, steps):
+    page.locator("[data-do=clear]").press("Enter")
+    for tool, *places in steps:
+        page.locator(f"[data-tool={tool}]").press("Enter")
+        for place in places:
+            put(page, *place)
+
+
+def text_of(page):
+    return page.input_value("#mechanism-text")
+
+
+def shown(page, piece):
+    """Wait until the view says something; a page allows no other way of waiting."""
+    until = time.monotonic() + 90
+    while piece not in page.inner_text("#mechanism-now"):
+        assert time.monotonic() < until, page.inner_text("#mechanism-now")
+        time.sleep(0.1)
+
+
+@pytest.mark.parametrize("put", [tapped, typed])
+def test_a_drawn_slider_crank_is_an_exercise_with_the_right_answers(desk, window, put):
+    page = window("/mechanisms/new", lang="fr", is_mobile=True)
+    faults = watched(page)
+    drawn(page, put, SLIDER_CRANK)
+    shown(page, "s_B")
+    page.fill("[name=name]", f"bielle_{put.__name__}")
+    page.click("button[value=save]")
+    page.wait_for_url("**saved=1")
+    assert page.locator(".draw svg circle").count() == 3  # what was drawn is there again
+    variant = desk[0].site.variant(f"bielle_{put.__name__}", 4, "fr")
+    crank, bar = variant.given["r2"], variant.given["r3"]
+    assert (crank, bar) == (50, round(math.hypot(175, 20) / 5) * 5)
+    x, y = (crank * f(math.radians(variant.given["theta2"])) for f in (math.cos, math.sin))
+    assert variant.solution()["s_B"] == pytest.approx(x + math.sqrt(bar**2 - (20 - y) ** 2))
+    assert (serious(page), too_wide(page), low(page), faults) == ([], 0, [], [])
+
+
+def test_undo_moves_and_boxes_keep_what_the_drawing_does_not_change(window):
+    page = window("/mechanisms/new")
+    before = text_of(page)
+    page.click("[data-tool=move]")
+    typed(page, 290, 220)
+    typed(page, 300, 250)
+    moved = text_of(page)
+    assert '"B":{"x":300,"y":250}' in moved
+    page.click("[data-do=undo]")
+    assert text_of(page).split() == before.split()
+    shown(page, "theta3")
+    page.check("input[name=varies][value=r2]")
+    until = time.monotonic() + 60
+    while 'r2 = { from = "50 mm"' not in text_of(page):
+        assert time.monotonic() < until
+        time.sleep(0.1)
+    page.click("[data-tool=move]")
+    typed(page, 290, 220)
+    typed(page, 300, 250)
+    assert 'r2 = { from = "50 mm"' in text_of(page)
+
+
+def test_the_figure_turns_with_its_slider_and_its_crank(window):
+    page = window("/mechanisms/new")
+    shown(page, "theta3")
+
+    def places():
+        lines = page.locator(".moving [data-moves]")
+        return lines.evaluate_all("all => all.map((n) => n.getAttribute(n.dataset.moves))")
+
+    before = places()
+    page.locator(".turn input").press("ArrowRight")
+    turned = places()
+    assert turned != before
+    handle = page.locator(".moving .handle").bounding_box()
+    page.mouse.move(handle["x"] + handle["width"] / 2, handle["y"] + handle["height"] / 2)
+    page.mouse.down()
+    page.mouse.move(handle["x"] + 40, handle["y"] + 60, steps=4)
+    page.mouse.up()
+    assert places() != turned
