@@ -55,7 +55,7 @@ _SOLUTION_IMPORTS = """from coursework.figures.polygons import (
 )
 from coursework.mechanics import Body, Gear, Load, Mechanism, Slide
 from coursework.marking.drawn_polygons import DrawingParts, met, off_both, scale_for, to_paper, turned, verdicts
-from coursework.solution import Moving, judge, mistake, stable, told_after
+from coursework.solution import Moving, given, judge, mistake, stable, told_after
 """
 
 
@@ -281,6 +281,7 @@ class CompiledLinkage:
             self._polygons(),
             motion,
             self._residual(),
+            self._known(),
         ]
         return "\n\n\n".join(p for p in pieces if p)
 
@@ -313,6 +314,34 @@ class CompiledLinkage:
             pieces.append(f"{name!r}: Moving({', '.join(v.complex for v in vectors)})")
         code = "{" + ", ".join(pieces) + "}"
         return f"def motion({', '.join(names_in(code))}):\n    return {code}" if pieces else ""
+
+    def _known(self) -> str:
+        """Return the code of the results that the file knows."""
+        cases = []
+        constants = {n: e.value for n, e in self.linkage.given.items() if e.value is not None}
+        for given, gives in self.linkage.known:
+            for name, (text, unit) in gives.items():
+                quantity = self.formulas.quantities.get(name)
+                if quantity is None or (unit or "1") != quantity.unit:
+                    would = (
+                        f"{text} {quantity.unit}"
+                        if quantity
+                        else ", ".join(n for n in self.formulas.quantities if n[0] != "_")
+                    )
+                    raise self.linkage.refused(
+                        ("known",),
+                        Message(
+                            "a known result is a quantity in its unit; found {name} = {text} {unit}; there is {would}",
+                            name=name,
+                            text=text,
+                            unit=unit,
+                            would=would,
+                        ),
+                    )
+            stated = ", ".join(f"{n}={v!r}" for n, v in {**constants, **given}.items())
+            results = ", ".join(f"{n}={text!r}" for n, (text, _) in gives.items())
+            cases.append(f"    given({stated}).gives({results}),")
+        return "KNOWN = (\n" + "\n".join(cases) + "\n)" if cases else ""
 
     def _residual(self) -> str:
         """Return the code of the residual: joints and their rates, from the frames of the bodies."""

@@ -16,7 +16,7 @@ from coursework.messages import Message, as_message
 from coursework.system.toml_files import TomlReader, source_of, table_of
 
 GROUND = "ground"
-KEYS = ("title", "version", "given", "ground", "bodies", "slides", "gears", "assembly", "ask")
+KEYS = ("title", "version", "given", "ground", "bodies", "slides", "gears", "assembly", "ask", "known")
 ASKED = (
     "mobility", "class", "positions", "equations", "velocities", "accelerations", "polygon", "instant_centres", "advantage", "torque", "points",
 )  # fmt: skip
@@ -152,6 +152,9 @@ class LinkageFile:
     speed: str = ""  #: '' where the file gives none
     acceleration: str = ""
     name: str = field(default="")
+    known: tuple[
+        tuple[Mapping[str, float | str], Mapping[str, tuple[str, str]]], ...
+    ] = ()  #: given values, then results as text and unit
 
     def refused(self, at: Sequence[str | int], why: str) -> BadInput:
         """Return the error of a key, with file and line."""
@@ -257,6 +260,7 @@ class _LinkageReader(TomlReader):
             self.path, self.source, title, self._whole("version", 1), self._ordered(given, angle), ground, bodies, slides,
             gears, assembly, near, self._ask(), loads, driver, angle,
             speed if speed in given else "", acceleration if acceleration in given else "", self.path.stem,
+            self._known(),
         )  # fmt: skip
         for fault in self._faults(linkage):
             raise fault
@@ -798,6 +802,43 @@ class _LinkageReader(TomlReader):
                     self._expression(at, load.get("angle", "0 deg"), "deg", f"delta_F{on}"),
                 )
             )
+        return tuple(results)
+
+    def _known(self) -> tuple[tuple[Mapping[str, float | str], Mapping[str, tuple[str, str]]], ...]:
+        """Return results that are known, such as those of a textbook."""
+        cases = self.table.get("known", [])
+        form = '[[known]], then given = { r2 = "50 mm" } and gives = { theta3 = "36.87 deg" }'
+        if not isinstance(cases, list) or not all(
+            isinstance(c, Mapping)
+            and isinstance(c.get("given"), Mapping)
+            and isinstance(c.get("gives"), Mapping)
+            for c in cases
+        ):
+            raise self.refused(
+                ("known",), Message("known results are {form}; found {cases!r}", form=form, cases=cases)
+            )
+        results = []
+        for number, case in enumerate(cases):
+            at = ("known", number)
+            self.only(case, ("given", "gives"), at, "known")
+            given: dict[str, float | str] = {}
+            for name, value in case["given"].items():
+                if name.startswith("mode_"):
+                    given[name] = str(value)
+                elif name not in self.units:
+                    near = nearest(name, self.units)
+                    raise self.refused(at, Message("no quantity {name!r}{near}", name=name, near=near))
+                else:
+                    given[name] = self._checked(at, amount, value, self.units[name])
+            gives = {}
+            for name, value in case["gives"].items():
+                match = re.fullmatch(r"\s*([+-]?\d+(?:\.\d+)?)\s*(\S*)\s*", str(value))
+                if match is None or not _NAME.match(name):
+                    raise self.refused(
+                        at, Message("known results are {form}; found {cases!r}", form=form, cases=case)
+                    )
+                gives[name] = match[1], match[2]
+            results.append((given, gives))
         return tuple(results)
 
     # -------------------------------------------------------------------- faults

@@ -14,6 +14,13 @@ TOGGLE = (FOLDER / "exercises" / "toggle.toml").read_text("utf-8")
 
 #: What is changed in a right file: the text, what replaces it, the line that is named, a piece of the message.
 FAULTS = [
+    (
+        "[given]",
+        '[[known]]\ngiven = { r9 = "3 mm" }\ngives = { theta3 = "1 deg" }\n[given]',
+        3,
+        "no quantity 'r9'",
+    ),
+    ("[given]", '[[known]]\ngiven = { r2 = "50 mm" }\ngives = { theta3 = "1 rad" }\n[given]', 3, "1 deg"),
     ('title = { fr = "Genouillère", en = "Toggle" }', "title = 3", 1, "title = {"),
     ("[ground]", "[grund]", 12, "did you mean 'ground'"),
     ('r1 = "180 mm"', "r1 = 180", 4, '"180 mm"'),
