@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import re
 from collections.abc import Collection, Mapping, Sequence
 from typing import Any, NamedTuple
@@ -68,6 +69,16 @@ def _range(match: re.Match[str]) -> str:
 def _middle(match: re.Match[str]) -> str:
     middle = round((float(match[2]) + float(match[3])) / 2 / STEP) * STEP
     return f'{match[1]}"{middle or STEP:g} mm"'
+
+
+def with_titles(text: str, titles: Sequence[tuple[str, str]]) -> str:
+    """Return the text with other titles, by language, in place of the line that states them; without any as it is."""
+    stated = ", ".join(f"{lang} = {json.dumps(title, ensure_ascii=False)}" for lang, title in titles if title)
+    if not stated:
+        return text
+    line = f"title = {{ {stated} }}"
+    changed, count = re.subn(r"^title\s*=.*$", lambda _: line, text, count=1, flags=re.MULTILINE)
+    return changed if count else f"{line}\n{text}"
 
 
 def questions(made: CompiledLinkage) -> dict[str, list[CheckBox]]:

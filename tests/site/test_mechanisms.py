@@ -162,6 +162,14 @@ def test_boxes_write_what_they_say(name, tmp_path_factory):
     }
 
 
+def test_titles_are_written_as_text():
+    titles = (("fr", 'Bielle "courte" # \\'), ("en", "Short rod"))
+    view = mechanism_view(TEXT, "mine", "en", CheckedBoxes((), ("positions theta3",), titles))
+    assert (view.fault, tomllib.loads(view.text)["title"]) == ("", dict(titles))
+    intruding = (("en", "{{ 7 * 7 }}"),)
+    assert "49" not in mechanism_view(TEXT, "mine", "en", CheckedBoxes((), (), intruding)).fault
+
+
 def test_a_length_varies_around_its_value_and_back():
     view = mechanism_view(TEXT, "mine", "en", CheckedBoxes(("r3",), ("positions theta3",)))
     assert tomllib.loads(view.text)["given"]["r3"] == {"from": "140 mm", "to": "210 mm", "step": "5 mm"}

@@ -121,3 +121,9 @@ def test_the_figure_turns_with_its_slider_and_its_crank(window):
     page.mouse.move(handle["x"] + 40, handle["y"] + 60, steps=4)
     page.mouse.up()
     assert places() != turned
+    page.click("[data-tool=move]")
+    typed(page, 290, 220)
+    typed(page, 300, 260)
+    shown(page, "135.5")  # the greatest angle of the output bar, which is another one now
+    assert page.locator(".turn").is_visible()
+    assert page.locator(".moving .handle").count() == 1

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import re
 import tempfile
 from collections.abc import Mapping
@@ -13,17 +14,16 @@ import numpy as np
 from markupsafe import Markup, escape
 
 from coursework.api import open_course
-from coursework.authoring.linkage_editing import lengths, questions, with_lengths, with_questions
+from coursework.authoring.linkage_editing import lengths, questions, with_lengths, with_questions, with_titles
 from coursework.authoring.linkage_files import mechanism_alone, report
 from coursework.course.folder import course_folder
 from coursework.errors import CourseworkError
-from coursework.language.words import words
+from coursework.language.words import languages, words
 from coursework.messages import localised, messages_in
 from coursework.model import symbol_of
 from coursework.rendering.displayed import DisplayedAnimation
 from coursework.rendering.environment import render
 from coursework.rendering.html import environment_of
-from coursework.rendering.keeping import in_script
 from coursework.scenes.animation import Animation
 from coursework.sheets.answer_sheet import answer_sheet
 
@@ -33,10 +33,11 @@ _LONGEST = 400  #: characters of a fault
 
 @dataclass(frozen=True)
 class CheckedBoxes:
-    """Check boxes of the page: lengths that vary, and questions as ``key name``."""
+    """Check boxes of the page: lengths that vary, and questions as ``key name``; with the titles beside them."""
 
     varying: tuple[str, ...]
     asked: tuple[str, ...]
+    titles: tuple[tuple[str, str], ...] = ()  #: by language
 
 
 @dataclass(frozen=True)
@@ -97,7 +98,7 @@ def _html(found: Mapping[str, Any], lang: str) -> Markup:
 def _changed(path: Path, text: str, choices: CheckedBoxes) -> str:
     with mechanism_alone(path, open_course) as (_, made):
         text = with_lengths(text, [c.name for c in lengths(text, made)], choices.varying)
-        return with_questions(text, made, choices.asked)
+        return with_questions(with_titles(text, choices.titles), made, choices.asked)
 
 
 def _line(text: str, fault: str) -> str:
@@ -119,6 +120,9 @@ def _found(path: Path, text: str, lang: str) -> dict[str, Any]:
             "rows": rows,
             "moving": _moving(DisplayedAnimation(variants[0]), words(lang, "site")["mechanisms"]["figure"]),
             "sheets": [(sheet, sheet.handout) for sheet in sheets],
+            "titles": [
+                (each, made.linkage.title.get(each) or made.linkage.title.get("", "")) for each in languages()
+            ],
             "lengths": lengths(text, made),
             "questions": questions(made),
             "symbols": {
@@ -163,5 +167,5 @@ def _moving(animation: Animation, label: str) -> dict[str, Any]:
         "svg": Markup(svg),
         "count": count,
         "first": animation.first,
-        "data": in_script({"frames": frames, "pivot": pivot, "way": way}),
+        "data": json.dumps({"frames": frames, "pivot": pivot, "way": way}),
     }

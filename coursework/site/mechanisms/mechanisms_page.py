@@ -18,6 +18,7 @@ from coursework.course.folder import MECHANISM
 from coursework.database.permissions import Permission
 from coursework.database.tables import variant
 from coursework.errors import BadInput, CourseworkError
+from coursework.language.words import languages
 from coursework.site.frame.budgets import MECHANISMS, read_apart
 from coursework.site.frame.requests import HTTPException, Request, Route
 from coursework.site.frame.responses import Download, redirect
@@ -76,7 +77,8 @@ def mechanism(request: Request) -> Response:
         return Download(text.encode(), "application/toml", f"{_usable(chosen) or 'mechanism'}{MECHANISM}")
     choices = None
     if action == "apply":
-        choices = CheckedBoxes(tuple(form.texts.get("varies", ())), tuple(form.texts.get("asks", ())))
+        titles = tuple((each, form.text(f"title_{each}").strip()) for each in languages())
+        choices = CheckedBoxes(tuple(form.texts.get("varies", ())), tuple(form.texts.get("asks", ())), titles)
     view = _view(request, text, _usable(chosen) or "mechanism", choices)
     if action == "save":
         problem = view.fault or _save(request, name, chosen, text)
