@@ -112,8 +112,9 @@ def _found(path: Path, text: str, lang: str) -> dict[str, Any]:
     with mechanism_alone(path, open_course) as (exercise, made):
         variants = [exercise.variant(seed, lang) for seed in range(_VARIANTS)]
         sheets = [answer_sheet(variant, polygons=False) for variant in variants]
+        types = words(lang, "site")["explore"]["types"]
         rows = [
-            (localised(row["property"], lang), localised(row["value"], lang))
+            (localised(row["property"], lang), types.get(str(row["value"])) or localised(row["value"], lang))
             for row in report(exercise, made, 0)
         ]
         return {
