@@ -38,16 +38,18 @@ _BUTTON = """(selector) => {
 
 
 class Pencil:
-    """A finger on the drawing surface of a practice page."""
+    """A finger on the drawing surface of a practice page; ``number`` says which variant, whatever other tests have drawn."""
 
-    def __init__(self, desk, exercise, size="telephone", lang="en"):
+    def __init__(self, desk, exercise, size="telephone", lang="en", number=None):
         self.class_, address, browser = desk
         self.context = context_of(browser, self.class_, address, ZOE, lang=lang, size=size)
         self.page = self.context.new_page()
         self.faults = watched(self.page)
         self.page.set_default_timeout(20_000)
-        seed = self.class_.site.pool.choose_seed(exercise, self.class_.ids[ZOE], _SEEDS[exercise])
-        _SEEDS[exercise].add(seed)
+        seeds = _SEEDS[exercise] if number is None else set()
+        for _ in range(1 if number is None else number + 1):
+            seed = self.class_.site.pool.choose_seed(exercise, self.class_.ids[ZOE], seeds)
+            seeds.add(seed)
         self.page.goto(f"{address}/practice/{exercise}/{seed}")
         self.fingers = self.context.new_cdp_session(self.page)
         self.variant = self.class_.site.variant(exercise, seed, lang)

@@ -76,9 +76,19 @@ def check(
     for step in steps:
         try:
             step()
+        except _NotAnswered:
+            raise
         except Exception as fault:  # perhaps an author's slip in a function of the course; the check goes on
             report.fail(_problem(fault))
     return report
+
+
+class _NotAnswered(Exception):
+    """Error of the processes that answer variants, and not of the exercise: nothing is known of it."""
+
+    def __init__(self, fault: Exception) -> None:
+        super().__init__(str(fault))
+        self.fault = fault
 
 
 def _problem(fault: Exception) -> str:
@@ -95,7 +105,10 @@ def check_all(
         return [_with_progress(_check_one(course, name, variants), progress) for name in names]
     with processes(count) as submit:
         if len(names) < count:
-            return [_with_progress(_check_one(course, name, variants, submit), progress) for name in names]
+            try:
+                return [_with_progress(_check_one(course, name, variants, submit), progress) for name in names]
+            except _NotAnswered as stopped:
+                raise stopped.fault from None
         # The longest first, so that no process waits for another at the end.
         longest = sorted(names, key=lambda name: -_length(course, name))
         tasks = {name: submit(_check_elsewhere, str(course.folder.root), name, variants) for name in longest}
@@ -162,7 +175,11 @@ def _check_variants(exercise: CourseExercise, count: int, report: CheckReport, s
     check_rounding_students(exercise, drawn, report)
     later, problem = _tried(_check_all_together, drawn, exercise.name)  # while others answer
     for result in pending:
-        _merge(report, *result())
+        try:
+            answered = result()
+        except Exception as fault:
+            raise _NotAnswered(fault) from fault
+        _merge(report, *answered)
     _merge(report, later, problem)
     for name in exercise.solution.mistakes:
         tally = report.mistakes.setdefault(name, Counter())

@@ -22,7 +22,7 @@ def desk(tmp_path_factory):
 def test_each_drawn_exercise_is_constructed_for_full_points(desk, size, lang):
     failed = {}
     for exercise in DRAWN:
-        hand = Draughtsman(desk, exercise, size, lang)
+        hand = Draughtsman(desk, exercise, size, lang, number=("telephone", "desk").index(size))
         values = getattr(constructions, exercise)(hand)
         for part, value in values.items():
             hand.type(part, f"{value:.5g}")
@@ -77,8 +77,8 @@ MISTAKEN = [
 
 def test_mistakes_that_are_drawn_are_named(desk):
     otherwise = {}
-    for exercise, mistakes, named in MISTAKEN:
-        hand = Draughtsman(desk, exercise, mistakes=mistakes)
+    for number, (exercise, mistakes, named) in enumerate(MISTAKEN, start=2):
+        hand = Draughtsman(desk, exercise, mistakes=mistakes, number=number)
         getattr(constructions, exercise)(hand)
         marks = hand.marks()
         said = {part: marks[part].verdict for part in named}
