@@ -106,7 +106,9 @@ def check_all(
     with processes(count) as submit:
         if len(names) < count:
             try:
-                return [_with_progress(_check_one(course, name, variants, submit), progress) for name in names]
+                return [
+                    _with_progress(_check_one(course, name, variants, submit), progress) for name in names
+                ]
             except _NotAnswered as stopped:
                 raise stopped.fault from None
         # The longest first, so that no process waits for another at the end.
