@@ -111,6 +111,8 @@ def shown(site: Lived) -> list[Shown]:
         ("/desk/people/{person}/erase", f"/desk/people/{own}/erase"),
         ("/desk/audit", "/desk/audit"),
         ("/desk/lti", "/desk/lti"),
+        ("/mechanisms", "/mechanisms"),
+        ("/mechanisms/{name}", "/mechanisms/new"),
         ("/desk/receipts", f"/desk/receipts?code={site.receipt}"),
         ("/desk/assignments", "/desk/assignments"),
         ("/desk/assignments/new", "/desk/assignments/new"),

@@ -72,6 +72,16 @@ def rise_dwell_return(u: Any, dwell: Any, turn: Any) -> tuple[Any, Any]:
     return np.minimum(np.maximum(share, 0.0), 1.0), np.where(before, 1.0, -1.0)[()]
 
 
+def _cycloidal(u: Any) -> Any:
+    """Return ``u - sin(2 pi u) / (2 pi)``, by its series where both are nearly equal."""
+    x = 2.0 * np.pi * u
+    small = np.minimum(x, 1.0) ** 2
+    series = 0.0 * small
+    for n in range(18, 0, -2):  # x^2/3! - x^4/5! + …, from the inside
+        series = small / (n * (n + 1)) * (1.0 - series)
+    return np.where(x < 1.0, u * series, u - sin(360.0 * u) / (2.0 * np.pi))[()]
+
+
 def rise(law: Any, u: Any) -> tuple[Any, Any, Any, Any]:
     """Return the lift by one of the :data:`LAWS` and its first three derivatives by ``u``; at rest outside 0 to 1.
 
@@ -92,28 +102,31 @@ def rise(law: Any, u: Any) -> tuple[Any, Any, Any, Any]:
     left = 1.0 - u
     both, odd, pi = u * left, 1.0 - 2.0 * u, np.pi + 0.0 * u
     half, turn = 180.0 * u, 360.0 * u
+    low = np.minimum(
+        u, left
+    )  # the second half of each lift is its first one, turned: there no digit is lost near the end
     laws = {
         "parabolic": (
-            np.where(odd > 0, 2.0 * u**2, 1.0 - 2.0 * left**2),
+            2.0 * low**2,
             4.0 * np.minimum(u, left),
             4.0 * np.sign(odd),
             0.0 * u,
         ),
         "harmonic": (
-            sin(half / 2.0) ** 2,
+            sin(90.0 * low) ** 2,
             pi / 2.0 * sin(half),
             pi**2 / 2.0 * cos(half),
             -(pi**3) / 2.0 * sin(half),
         ),
         "cycloidal": (
-            u - sin(turn) / (2.0 * pi),
+            _cycloidal(low),
             2.0 * sin(half) ** 2,
             2.0 * pi * sin(turn),
             4.0 * pi**2 * cos(turn),
         ),
-        "polynomial_345": (*rise_345(u), 60.0 - 360.0 * both),
+        "polynomial_345": (rise_345(low)[0], *rise_345(u)[1:], 60.0 - 360.0 * both),
         "polynomial_4567": (
-            u**4 * (35.0 - 84.0 * u + 70.0 * u**2 - 20.0 * u**3),
+            low**4 * (35.0 - 84.0 * low + 70.0 * low**2 - 20.0 * low**3),
             140.0 * both**3,
             420.0 * both**2 * odd,
             840.0 * both * (1.0 - 5.0 * both),
@@ -123,4 +136,5 @@ def rise(law: Any, u: Any) -> tuple[Any, Any, Any, Any]:
     for name, values in laws.items():
         found = [np.where(law == name, value, other)[()] for value, other in zip(values, found, strict=True)]
     lift, slope, *bends = found
+    lift = np.where(u > 0.5, 1.0 - lift, lift)[()]
     return lift, slope, np.where(moving, bends[0], 0.0 * u)[()], np.where(moving, bends[1], 0.0 * u)[()]
