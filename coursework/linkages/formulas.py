@@ -106,7 +106,7 @@ class FormulaWriter(HigherGroupWriter):
         code = f"{'-' if sign < 0 else ''}np.where(np.isin(mode_{point}, ('left', 'ahead')), 1, -1)"
         return self.write(name, code, "1", f"{kind}_drawn", symbol, words=words)
 
-    def _line(self, start: str, end: str, group_words: Mapping[str, str]) -> tuple[str, str]:
+    def _line(self, start: str, end: str) -> tuple[str, str]:
         """Write the distance and the direction between two placed points."""
         gap = self.at(end) - self.at(start)
         length, turn = f"d_{start}{end}", f"phi_{start}{end}"
@@ -138,7 +138,7 @@ class FormulaWriter(HigherGroupWriter):
         p, q = group.p, group.q
         to_p, to_q = self.arm(p, P, B), self.arm(q, Q, B)
         words = {"P": P, "B": B, "Q": Q, "p": p, "q": q}
-        distance, line = self._line(P, Q, words)
+        distance, line = self._line(P, Q)
         side = self._mode(B, "", (P, Q))
         first, second = to_p.length, to_q.length
         point = self.hide(
@@ -153,8 +153,7 @@ class FormulaWriter(HigherGroupWriter):
         offset = to_p.heading - self.heading(p)
         self._write_turn(p, f"{line} + {side} * {corner}", to_p, offset, P, point, "turn_by_corner", words)
         self._finish_rod(p, P)
-        there = self.at(B)
-        away = there - self.at(Q)
+        away = self.at(B) - self.at(Q)
         self._write_turn(
             q, f"atan2({away.y.code}, {away.x.code})", to_q, to_q.heading - self.heading(q), Q, point, "turn_by_ends", words,
             wrapped=True,
@@ -195,21 +194,20 @@ class FormulaWriter(HigherGroupWriter):
         arms = f"{self.complex(B)} - {self.complex(P)}, {self.complex(B)} - {self.complex(Q)}"
         v_P, v_Q = self.velocity(P), self.velocity(Q)
         rates = f"_rates_{B}"
-        self.hide(rates, f"dyads.rrr_rates({arms}, ({_complex(v_P)},), ({_complex(v_Q)},))")
-        turning = {**words}
+        self.hide(rates, f"dyads.rrr_rates({arms}, ({v_P.complex},), ({v_Q.complex},))")
         for body, own, heading, below, start, index in (
             (p, v_Q - v_P, to_q.heading, below_p, words["q"], 0),
             (q, v_P - v_Q, to_p.heading, below_q, words["p"], 1),
         ):
             self.write(
-                self.omega(body), f"{over(own.along(heading), below)}", "rad/s", "omega_rrr",
-                words={**turning, "body": body, "other": start}, stable=f"{rates}[{index}][0]",
+                self.omega(body), over(own.along(heading), below), "rad/s", "omega_rrr",
+                words={**words, "body": body, "other": start}, stable=f"{rates}[{index}][0]",
             )  # fmt: skip
         a_P, a_Q = self.acceleration(P), self.acceleration(Q)
         gains = f"_gains_{B}"
         self.hide(
             gains,
-            f"dyads.rrr_rates({arms}, ({_complex(v_P)}, {_complex(a_P)}), ({_complex(v_Q)}, {_complex(a_Q)}))",
+            f"dyads.rrr_rates({arms}, ({v_P.complex}, {a_P.complex}), ({v_Q.complex}, {a_Q.complex}))",
         )
         w_p, w_q = f"{self.omega(p)}**2", f"{self.omega(q)}**2"
         above_p = (a_Q - a_P).along(to_q.heading) + lever_p.times(w_p, between.cos) - lever_q.times(w_q)
@@ -225,7 +223,7 @@ class FormulaWriter(HigherGroupWriter):
         for body, above, below, other, index in ((p, above_p, below_p, q, 0), (q, above_q, below_q, p, 1)):
             self.write(
                 self.alpha(body), over(above, below), "rad/s^2", "alpha_rrr",
-                words={**turning, "body": body, "other": other}, stable=f"{gains}[{index}][1]",
+                words={**words, "body": body, "other": other}, stable=f"{gains}[{index}][1]",
             )  # fmt: skip
 
     def _rrp(self, group: Dyad) -> None:
@@ -242,7 +240,7 @@ class FormulaWriter(HigherGroupWriter):
         side = self._mode(B, "ahead", (P, ""))
         length = arm.length
         unit = f"polar(1, {heading.code})"
-        start = self.hide(f"_line_{B}", self._hidden(base))
+        start = self.hide(f"_line_{B}", base.complex)
         point = self.hide(
             f"_{B}", f"dyads.rrp({self.complex(P)}, {length.code}, {start} + 0j, {side}, {unit})"
         )
@@ -269,9 +267,6 @@ class FormulaWriter(HigherGroupWriter):
             self.write(
                 f"{axis}{point}", component.code, "mm", f"end_{axis}", words=words, stable=f"{hidden}.{half}"
             )
-
-    def _hidden(self, vector: Plane) -> str:
-        return vector.complex
 
     def _slide_symbol(self, slide: SlideEntry) -> str:
         return f"s_{{{slide.at}}}" if slide.distance == f"s_{slide.at}" else ""
@@ -374,7 +369,7 @@ class FormulaWriter(HigherGroupWriter):
         constant = local_plane(slide.through) - self.local(Q, q) + self.local(P, p) - self.local(slide.at, p)
         ahead, aside = constant.along(direction), constant.across(direction)
         words = {"P": P, "Q": Q, "p": p, "q": q, "s": slide.distance, "B": slide.at, "guide": q}
-        length, line = self._line(Q, P, words)
+        length, line = self._line(Q, P)
         offset = ""
         if not aside.vanishes:
             offset = (
@@ -494,7 +489,7 @@ class FormulaWriter(HigherGroupWriter):
 
         def write(vector: Plane, ending: str, unit: str, step: str, order: int) -> None:
             for slide, code in zip((one, other), split(vector), strict=True):
-                symbol = _dotted(self._slide_symbol(slide) or "", order)
+                symbol = _dotted(self._slide_symbol(slide), order)
                 self.write(
                     slide.distance + ending, code, unit, step, symbol, words={**words, "s": slide.distance}
                 )
@@ -573,7 +568,6 @@ class FormulaWriter(HigherGroupWriter):
         first, second = (f"({r.code})" if not r.code.isidentifier() else r.code for r in gear.radii)
         other = gear.first if body == gear.second else gear.second
         own, far = (second, first) if body == gear.second else (first, second)
-        sign = "-" if gear.inner else "+"
         words = {"body": body, "other": other, "carrier": gear.carrier}
 
         def rolled(value: Any) -> str:
@@ -587,18 +581,13 @@ class FormulaWriter(HigherGroupWriter):
                 else f"-{carrier}"
             )
             turned = f"{'' if gear.inner else '-'}{ratio} * {about}" if about != "0" else "0"
-            turned = turned.replace("--", "").replace("* -", "* -")
+            turned = turned.replace("--", "")
             return turned if carrier == "0" else f"{carrier} {'+' if gear.inner else '-'} {ratio} * {about}"
 
-        del sign
         self.write(self.turns[body], rolled(lambda b: self.turns[b]), "deg", "turn_gear", words=words)
         self._finish_rod(body, wheel.at)
         self.write(self.omega(body), rolled(self.omega), "rad/s", "omega_gear", words=words)
         self.write(self.alpha(body), rolled(self.alpha), "rad/s^2", "alpha_gear", words=words)
-
-
-def _complex(vector: Plane) -> str:
-    return vector.complex
 
 
 def _dotted(symbol: str, order: int) -> str:
