@@ -150,9 +150,7 @@ def _direction(arm: Arm) -> str:
 def _turn(writer: FormulaWriter, body: str, arm: Arm, code: str) -> None:
     """Compute the angle of a body from the direction of a vector on it."""
     back = -(arm.heading - writer.heading(body)) + Heading((), 180.0 if arm.sign < 0 else 0.0)
-    rest = back.code if back.names or back.constant else ""
-    more = f" - {rest[1:]}" if rest.startswith("-") else f" + {rest}" if rest else ""
-    _stable(writer, writer.turns[body], f"wrap({code}{more})")
+    _stable(writer, writer.turns[body], f"wrap({back.after(code)})")
 
 
 def _stable(writer: FormulaWriter, name: str, code: str) -> None:

@@ -167,22 +167,10 @@ class FormulaWriter(HigherGroupWriter):
     ) -> None:  # fmt: skip
         """Write the angle of a body from the direction of an arm on it, which ends at a hidden point."""
         back = Heading((), 180.0 if arm.sign < 0 else 0.0) + -offset
-        rest = back.code if back.names or back.constant else ""
-        shifted = (
-            f"{code} + {rest}"
-            if rest and not rest.startswith("-")
-            else f"{code} - {rest[1:]}"
-            if rest
-            else code
-        )
-        whole = shifted if wrapped and not rest else f"wrap({shifted})"
+        whole = code if wrapped and back.vanishes else f"wrap({back.after(code)})"
         vector = f"{end} - {self.complex(start)}" if arm.sign > 0 else f"{self.complex(start)} - {end}"
-        stable = (
-            f"angle({vector})"
-            if not offset.names and not offset.constant
-            else f"wrap(angle({vector}) - ({offset.code}))"
-        )
-        turned = step if not rest else f"{step}_offset"
+        stable = f"angle({vector})" if offset.vanishes else f"wrap(angle({vector}) - ({offset.code}))"
+        turned = step if back.vanishes else f"{step}_offset"
         self.write(self.turns[body], whole, "deg", turned, words={**words, "body": body}, stable=stable)
 
     def _rates_rrr(self, group: Dyad, to_p: Arm, to_q: Arm, words: Mapping[str, str]) -> None:
@@ -391,11 +379,10 @@ class FormulaWriter(HigherGroupWriter):
         )  # fmt: skip
         whole = Sum.of(distance) + ahead
         turn = f"{line} - atan2({offset}, {whole.code})" if offset else f"{line} + 90 * (1 - {side})"
-        back = (-direction).code if direction.names or direction.constant else ""
-        turn += f" {'- ' + back[1:] if back.startswith('-') else '+ ' + back}" if back else ""
+        back = -direction
         self.write(
-            self.turns[q], f"wrap({turn})", "deg", "turn_rpr_offset" if offset else "turn_rpr", words={**words, "body": q},
-            stable=f"wrap(angle({pair}[0]){' ' + ('- ' + back[1:] if back.startswith('-') else '+ ' + back) if back else ''})",
+            self.turns[q], f"wrap({back.after(turn)})", "deg", "turn_rpr_offset" if offset else "turn_rpr", words={**words, "body": q},
+            stable=f"wrap({back.after(f'angle({pair}[0])')})",
         )  # fmt: skip
         self._finish_rod(q, Q)
         self._finish_rod(p, P)

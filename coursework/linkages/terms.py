@@ -122,6 +122,18 @@ class Heading:
         return text
 
     @property
+    def vanishes(self) -> bool:
+        """True if this is the direction zero."""
+        return not self.names and not self.constant
+
+    def after(self, code: str) -> str:
+        """Return the code of an angle with this direction added to it."""
+        if self.vanishes:
+            return code
+        rest = self.code
+        return f"{code} - {rest[1:]}" if rest.startswith("-") else f"{code} + {rest}"
+
+    @property
     def cos(self) -> str:
         """Its cosine as code; a number for a constant direction."""
         return self._function(math.cos, "cos")
