@@ -63,13 +63,26 @@ LOGIN = _titles(
     "sis user id", "sis login id", "integration id", "username", "login", "nom d'utilisateur", "identifiant",
     "numéro d'identification",
 )  # fmt: skip
+#: What an exam is organised by.
+_GROUP = _titles("group", "groupe", "class group", "groupe de td")
+GROUP = (*_GROUP, *_titles("groupe td", "groupe de tp", "td", "tutorial group"))
+ROOM = _titles("room", "salle", "amphi", "amphithéâtre", "lecture hall", "salle d'examen")
+SEAT = _titles(
+    "seat", "place", "siège", "seat number", "n° de place", "numéro de place", "n° de table", "table"
+)
+EXTRA_TIME = _titles(
+    "extra time", "extra-time", "tiers temps", "tiers-temps", "1/3 temps", "temps majoré", "majoration de temps", "majoration",
+    "temps supplémentaire", "temps additionnel",
+)  # fmt: skip
 _PRINTED = {
     "number": (
         *_NUMBER_FIRST,
         *_titles("id number", "numéro", "numéro d'étudiant", "numéro étudiant", "num", "no", "n°"),
     ),
     "email": EMAIL,
-    "group": _titles("group", "groupe", "class group", "groupe de td"),
+    "group": _GROUP,
+    "room": ROOM,
+    "seat": SEAT,
 }
 _APART = (
     *_NUMBER_FIRST,

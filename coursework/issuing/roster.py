@@ -9,6 +9,7 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from coursework.errors import BadInput, counted
+from coursework.issuing.exam_columns import extra_time_of
 from coursework.issuing.identity import EMAIL, FIRST_NAME, NUMBER, SURNAME, WHOLE, distinguishing_id, plain
 from coursework.issuing.platform_rosters import RosterLine, first_name_first, without_marks
 from coursework.issuing.students import folded
@@ -116,7 +117,12 @@ def read_roster(
                 lang=lang,
                 languages=", ".join(languages()),
             )
-        numbered.append((number, Student(name, lang, {header[c].strip(): cells[c].strip() for c in others})))
+        columns_of_row = {header[c].strip(): cells[c].strip() for c in others}
+        try:
+            extra_time_of(columns_of_row)
+        except BadInput as fault:
+            raise BadInput("{location}: {problem}", location=location, problem=fault) from fault
+        numbered.append((number, Student(name, lang, columns_of_row)))
     if not numbered:
         raise BadInput("the roster {file} names no student", file=path)
     _tell_lost(path, [header[c].strip() for c in others], warn)

@@ -20,6 +20,7 @@ from coursework.course.secrecy import Secret
 from coursework.course.variant import Variant
 from coursework.errors import BadInput, counted, nearest
 from coursework.issuing.assignment import AskedExercise, Assignment
+from coursework.issuing.exam_columns import room_of, seat_of
 from coursework.issuing.flaws import try_judges
 from coursework.issuing.issued import secret_of
 from coursework.issuing.issuing import Issue, check_languages, drawn_by, reservations, whose_languages
@@ -385,20 +386,17 @@ def _neighbours(roster: Sequence[Student], of: Any) -> dict[str, set[str]]:
     for student_before, other in pairwise(roster):
         beside(student_before, other)
     seats = {seat: s for s in roster if (seat := _seat(s)) is not None}
-    for (row, number), student in seats.items():
-        for there in ((row, number + 1), (row + 1, number)):
+    for (room, row, number), student in seats.items():
+        for there in ((room, row, number + 1), (room, row + 1, number)):
             if there in seats:
                 beside(student, seats[there])
     return neighbours
 
 
-def _seat(student: Student) -> tuple[int, int] | None:
-    """Return row and number of ``B12`` or ``2-12``."""
-    text = next(
-        (v for k, v in student.columns.items() if k.strip().casefold() in ("seat", "place", "siège")), ""
-    )
-    match = re.fullmatch(r"\s*([A-Za-z]|\d+)\s*[-. ]?\s*(\d+)\s*", text)
+def _seat(student: Student) -> tuple[str, int, int] | None:
+    """Return room, row and number of ``B12`` or ``2-12``."""
+    match = re.fullmatch(r"([A-Za-z]|\d+)\s*[-. ]?\s*(\d+)", seat_of(student.columns))
     if match is None:
         return None
     row = int(match[1]) if match[1].isdigit() else ord(match[1].upper()) - ord("A")
-    return row, int(match[2])
+    return folded(room_of(student.columns)), row, int(match[2])
