@@ -22,6 +22,7 @@ from coursework.cli.options import (
     lang_option,
     opened,
     shared_by_cluster,
+    split_list,
     writes,
 )
 from coursework.cli.printing import print_json, progress_bar, say, warn, warn_some
@@ -92,6 +93,14 @@ if TYPE_CHECKING:
         "decisions.csv in the folder of the marks is always read."
     ),
 )
+@click.option(
+    "--carry",
+    metavar="COLUMN,COLUMN",
+    help=(
+        "Columns of the roster that summary.csv repeats, such as number,group; by default those of the assignment, else "
+        "all but birth, health and extra time."
+    ),
+)
 @decimal_option
 @click.option(
     "--from",
@@ -117,6 +126,7 @@ def grade(
     with_solutions: bool,
     today: datetime.datetime | None,
     accepted: Path | None,
+    carry: str | None,
     decimal: str,
     marks: Path | None,
     cluster: str | None,
@@ -148,10 +158,13 @@ def grade(
         raise BadInput(
             "{option} is of a database: --db URL", option="--assignment" if assignment else "--replace"
         )
+    if db is not None and carry is not None:
+        raise BadInput("--carry is of files: in a database the assignment states what is carried")
     _check_source(submissions, marks, accepted, in_database=db is not None)
     from coursework.gradebook.feedback_form import FeedbackForm
 
     form = FeedbackForm(formats, with_solutions, today.date() if today else None)
+    carried = None if carry is None else split_list(carry)
     shared_by_cluster(context, cluster)
     if db is not None:
         from coursework.cli.database import grade_stored
@@ -178,7 +191,7 @@ def grade(
         out = out or marks.parent
         writes(context, out)
         return _told_standing(
-            _grade_standing(opened(context), marks, issued, out, feedback, decimal, form), marks, out
+            _grade_standing(opened(context), marks, issued, out, feedback, decimal, form, carried), marks, out
         )
     out = out or issued.parent / "marks"
     writes(context, out)
@@ -191,6 +204,7 @@ def grade(
         accepted=accepted,
         decimal=decimal,
         form=form,
+        carry=carried,
     )
     return _print_gradebook(book, out)
 
@@ -276,6 +290,7 @@ def _grade_standing(
     feedback: bool | None,
     decimal: str,
     form: FeedbackForm,
+    carry: Sequence[str] | None,
 ) -> Gradebook:
     from coursework.gradebook.grading import grade_edited_marks
     from coursework.system.tables import SPREADSHEETS
@@ -290,6 +305,7 @@ def _grade_standing(
             spreadsheet=SPREADSHEETS[decimal],
             progress=advance,
             form=form,
+            carry=carry,
         )
 
 
@@ -327,6 +343,7 @@ def grade_with_bar(
     accepted: Path | None = None,
     decimal: str = "point",
     form: FeedbackForm | None = None,
+    carry: Sequence[str] | None = None,
 ) -> Gradebook:
     """Mark files and write the tables, with a bar on a terminal."""
     from coursework.gradebook.feedback_form import FeedbackForm
@@ -344,6 +361,7 @@ def grade_with_bar(
             spreadsheet=SPREADSHEETS[decimal],
             progress=advance,
             form=form or FeedbackForm(),
+            carry=carry,
         )
 
 

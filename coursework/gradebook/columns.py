@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from coursework.issuing.exam_columns import is_private
+from coursework.issuing.identity import is_same_column
 from coursework.issuing.issued import Issued
 from coursework.issuing.students import folded
 
@@ -57,9 +59,20 @@ def exercise_columns(issued: Issued) -> dict[str, str]:
 
 
 def carried_columns(issued: Issued) -> dict[str, str]:
-    """Return the columns of the roster: folded title -> name in the summary."""
+    """Return the columns of the roster that the summary repeats: folded title -> name in the summary. Columns of birth,
+    health and extra time are among them only where the assignment or the command names them."""
     titles = {folded(title): title for cells in issued.columns.values() for title in cells}
-    return {f: _distinct_title(title, _reserved_names(issued)) for f, title in titles.items() if f}
+    return {
+        f: _distinct_title(title, _reserved_names(issued))
+        for f, title in titles.items()
+        if f and _is_carried(issued, title)
+    }
+
+
+def _is_carried(issued: Issued, title: str) -> bool:
+    if issued.carry is None:
+        return not is_private(title)
+    return any(is_same_column(title, wanted) for wanted in issued.carry)
 
 
 def _reserved_names(issued: Issued) -> frozenset[str]:

@@ -59,13 +59,15 @@ def grade_files(
     spreadsheet: Spreadsheet = SPREADSHEETS["point"],
     progress: Progress = lambda done, of: None,
     form: FeedbackForm = USUAL,
+    carry: Sequence[str] | None = None,
 ) -> Gradebook:
     """Mark files and write ``marks.csv``, ``summary.csv``, ``rejected.csv`` and feedback sheets; ``decisions.csv`` where
     answers are marked by a person, whose decisions in an earlier one count.
 
     If there are earlier marks, ``changes.csv`` lists the differences. ``accepted`` is a file of answers that
     a person accepts, besides ``decisions.csv`` in ``out``. ``feedback`` None prints sheets for a class of
-    usual size, with the options of ``form``. ``spreadsheet`` is the program for which the tables are written.
+    usual size, with the options of ``form``. ``spreadsheet`` is the program for which the tables are written. ``carry`` names
+    columns of the roster that the summary repeats, instead of those of the assignment.
 
     Raises
     ------
@@ -73,6 +75,7 @@ def grade_files(
         A file that is not there, or nothing that can be marked, or solutions before their day: then nothing is written.
     """
     issued = Issued.read(issued_path)
+    issued.carry = issued.carry if carry is None else carry
     shows_solutions(issued, form)
     files = DecisionFiles(out, accepted)
 
@@ -196,6 +199,7 @@ def grade_edited_marks(
     spreadsheet: Spreadsheet = SPREADSHEETS["point"],
     progress: Progress = lambda done, of: None,
     form: FeedbackForm = USUAL,
+    carry: Sequence[str] | None = None,
 ) -> Gradebook:
     """Write ``summary.csv``, ``rejected.csv`` and feedback sheets for the marks in a file.
 
@@ -208,6 +212,7 @@ def grade_edited_marks(
         A line that holds no mark of what was issued, or solutions before their day; then nothing is written.
     """
     issued = Issued.read(issued_path)
+    issued.carry = issued.carry if carry is None else carry
     shows_solutions(issued, form)
     decisions, files = DecisionFiles(marks.parent).decisions, DecisionFiles(out)
     standing = EditedMarks(course, issued, marks)

@@ -1,4 +1,4 @@
-"""Exports of platforms, recognised by their content and not by their name: a table of readers."""
+"""Exports of platforms and wide tables, recognised by their content and not by their name: a table of readers."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import Any, NamedTuple
 
 from coursework.errors import counted
-from coursework.gradebook import canvas_answers, moodle_responses
+from coursework.gradebook import canvas_answers, moodle_responses, wide_answers
 from coursework.gradebook.rows import AnswerRow, PlatformFile, Rejected, name_in
 from coursework.messages import Message
 
@@ -25,6 +25,7 @@ class PlatformTable(NamedTuple):
 TABLES = (
     PlatformTable(moodle_responses.columns_of, moodle_responses.read_responses),
     PlatformTable(canvas_answers.columns_of, canvas_answers.read_answers),
+    PlatformTable(wide_answers.columns_of, wide_answers.read_wide),
 )
 FAULTS = (moodle_responses.is_another, canvas_answers.is_another)
 

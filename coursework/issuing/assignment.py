@@ -97,6 +97,9 @@ class Assignment:
     mark: Scale | None = None
     versions: int | None = None  #: number of versions; None: a variant per student
     identity: tuple[str, ...] = ()
+    carry: tuple[str, ...] | None = (
+        None  #: columns of the roster that the summary repeats; None: all but private ones
+    )
     sort: str = ""  #: the column by which a booklet is sorted; empty: as the roster
     sittings: str = "best"
     answers: str = "shown"
@@ -119,6 +122,7 @@ class Assignment:
             "duration": dict(self.duration),
             "mark": None if self.mark is None else {"of": self.mark.of, "step": self.mark.step},
             "identity": list(self.identity),
+            **({} if self.carry is None else {"carry": list(self.carry)}),
             "sittings": self.sittings,
             "answers": self.answers,
             **({"solutions_after": self.solutions_after.isoformat()} if self.solutions_after else {}),
@@ -208,7 +212,8 @@ class _AssignmentReader(TomlReader):
             "cover": self._truth("cover"),
             "mark": self._mark,
             "versions": self._versions,
-            "identity": self._identity,
+            "identity": self._columns("identity"),
+            "carry": self._columns("carry"),
             "sort": self._sort,
             "sittings": self._word("sittings", SITTINGS),
             "answers": self._word("answers", ANSWERS),
@@ -364,18 +369,22 @@ class _AssignmentReader(TomlReader):
             )
         return value
 
-    def _identity(self, value: Any) -> tuple[str, ...]:
-        if not isinstance(value, list) or not all(
-            isinstance(column, str) and column.strip() for column in value
-        ):
-            raise self.refused_key(
-                "identity",
-                Message(
-                    'identity lists columns of the roster: ["number", "group"]; found {found}',
-                    found=reprlib.repr(value),
-                ),
-            )
-        return tuple(value)
+    def _columns(self, key: str) -> Callable[[Any], tuple[str, ...]]:
+        def read(value: Any) -> tuple[str, ...]:
+            if not isinstance(value, list) or not all(
+                isinstance(column, str) and column.strip() for column in value
+            ):
+                raise self.refused_key(
+                    key,
+                    Message(
+                        '{key} lists columns of the roster: ["number", "group"]; found {found}',
+                        key=key,
+                        found=reprlib.repr(value),
+                    ),
+                )
+            return tuple(value)
+
+        return read
 
     def _sort(self, value: Any) -> str:
         if not isinstance(value, str) or not value.strip():

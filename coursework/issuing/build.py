@@ -15,6 +15,7 @@ from coursework.issuing.booklets import Booklet
 from coursework.issuing.issued import COLUMNS, form_rows, issued_content, key_content, key_rows
 from coursework.issuing.issuing import Issue
 from coursework.issuing.papers import IssuedPaper, papers
+from coursework.issuing.wide_form import wide_form
 from coursework.rendering.renderer import Renderer, renderer_of
 from coursework.sheets.sheet import AnswerSheet, Handout
 from coursework.system.tables import SPREADSHEETS, Spreadsheet, csv_file, json_text
@@ -91,6 +92,9 @@ def tables(
     content = issued_content(issues, assignment, secret)
     yield File(Path("issued.json"), _text(lambda: json_text(content)))
     yield File(Path("answers.csv"), lambda: csv_file(form_rows(issues), COLUMNS, spreadsheet))
+    if assignment is not None:
+        columns, rows = wide_form(issues, assignment.identity)
+        yield File(Path("answers_wide.csv"), lambda: csv_file(rows, columns, spreadsheet))
     yield from key_files(issues, spreadsheet)
 
 

@@ -118,6 +118,14 @@ def _printed_title(title: str, lang: str) -> str:
     return text if any(map(str.isupper, text)) else text.upper() if len(text) <= 3 else text.capitalize()
 
 
+def is_same_column(title: str, wanted: str) -> bool:
+    """Return whether a column is the one that is named: by its title, or by another usual title of what it holds."""
+    known = (NUMBER, EMAIL, GROUP, ROOM, SEAT, EXTRA_TIME)
+    return plain(title) == plain(wanted) or any(
+        {plain(title), plain(wanted)} <= {*titles} for titles in known
+    )
+
+
 def identifies(title: str) -> bool:
     return is_called(title, (*NUMBER, *EMAIL, *LOGIN))
 

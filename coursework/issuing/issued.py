@@ -46,6 +46,8 @@ class Issued:
         self.has_roster = bool(content.get("roster"))
         self.is_pool = bool(content.get("pool"))
         self.assignment = _stated(content.get("assignment"), source)
+        #: Columns of the roster that the summary repeats; None: all but private ones.
+        self.carry: Sequence[str] | None = (self.assignment or {}).get("carry")
         self.columns: dict[str, Mapping[str, str]] = _columns(content.get("students"), source)
         self.records: dict[tuple[str, int], Mapping[str, Any]] = {}
         self.owners: dict[tuple[str, int], tuple[str, ...]] = {}
