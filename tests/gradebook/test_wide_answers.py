@@ -5,7 +5,6 @@ import csv
 import pytest
 from small_assignment import table
 
-from coursework import open_course
 from coursework.cli import run
 from coursework.gradebook.submissions import read_file
 
@@ -24,6 +23,11 @@ def built(small_course, tmp_path):
     return small_course, out
 
 
+def grade(course, out, typed, *options):
+    asked = ["grade", str(typed), "--issued", str(out / "issued.json"), "--no-feedback", *options]
+    return run(["--course", str(course), *asked])
+
+
 def test_the_form_of_a_line_for_each_student_is_filled_and_marked(built):
     course, out = built
     with (out / "answers_wide.csv").open(encoding="utf-8-sig", newline="") as file:
@@ -38,26 +42,13 @@ def test_the_form_of_a_line_for_each_student_is_filled_and_marked(built):
     assert [row[:2] for row in rows] == [["Ada", "101"], ["Bo", "102"], ["Cy", "103"]]
     key = {(k["student"], k["part"]): k["value"] for k in table(out / "instructor" / "key.csv")}
     rows[0][2:] = [key["Ada", part].replace(".", ",") for part in "xyv"]
-    rows[1] = ["", "102", "", key["Bo", "y"], "?"]  # known by the number alone
+    rows[1] = ["", "102", "", key["Bo", "y"], "twelve apples"]  # known by the number alone
     typed = out.parent / "typed.csv"
     with typed.open("w", newline="", encoding="cp1252") as file:
         csv.writer(file, delimiter=";").writerows(
             [header, *rows, ["Eve", "999", "1", "", ""], ["Bo", "102", "1", "", "", "9"]]
         )
-    assert (
-        run(
-            [
-                "--course",
-                str(course),
-                "grade",
-                str(typed),
-                "--issued",
-                str(out / "issued.json"),
-                "--no-feedback",
-            ]
-        )
-        == 1
-    )
+    assert grade(course, out, typed) == 1
     summary = table(out / "marks" / "summary.csv")
     assert [(s["student"], s["correct"], s["unreadable"], s["missing"]) for s in summary] == [
         ("Ada", "3", "0", "0"), ("Bo", "1", "1", "1"), ("Cy", "0", "0", "3"),
@@ -81,23 +72,13 @@ def test_other_tables_are_not_taken_for_wide_ones(tmp_path):
 
 def test_the_summary_repeats_the_columns_that_are_chosen_and_private_ones_never_unasked(built):
     course, out = built
-    assert open_course(course)
     typed = out / "answers.csv"
 
     def carried(*options):
-        run(
-            [
-                "--course",
-                str(course),
-                "grade",
-                str(typed),
-                "--issued",
-                str(out / "issued.json"),
-                "--no-feedback",
-                *options,
-            ]
+        grade(course, out, typed, *options)
+        return (
+            (out / "marks" / "summary.csv").read_text("utf-8-sig").splitlines()[0].rpartition(",missing")[2]
         )
-        return (out / "marks" / "summary.csv").read_text("utf-8-sig").splitlines()[0].rpartition(",missing")[2]
 
     assert carried() == ",group"
     assert carried("--carry", "groupe,tiers temps") == ",group,extra_time"
