@@ -67,14 +67,23 @@ def _submitted_file(by: tuple[str, ...], time: str, root: str, platform: str, fo
     return SubmittedFile(RowOrigin(by=by, submitted=time), PlatformFile(root, platform, is_tree=True))
 
 
-def latest_first(files: Iterable[Path]) -> list[Path]:
-    """Return the files in their order; of an exchange folder, the last submission of a student comes first,
-    since the first one read counts."""
-    return sorted(files, key=lambda path: [_sort_key(part) for part in path.parts])
+def latest(files: Iterable[Path]) -> list[Path]:
+    """Return the files in the order of their names; of each student's submissions of an assignment in an exchange
+    folder, those of the last one alone, as nbgrader collects them."""
+    last: dict[tuple[Path, str, str], tuple[str, str]] = {}
+    kept: list[tuple[Path, tuple[Path, str, str] | None, tuple[str, str]]] = []
+    for file in sorted(files):
+        key, submission = _exchange_submission(file)
+        if key is not None:
+            last[key] = max(submission, last.get(key, submission))
+        kept.append((file, key, submission))
+    return [file for file, key, submission in kept if key is None or last[key] == submission]
 
 
-def _sort_key(folder: str) -> tuple[str, tuple[int, ...], str]:
-    match = _EXCHANGE.fullmatch(folder)
-    if match is None:
-        return folder, (), ""
-    return f"{match['student']}+{match['assignment']}+", tuple(-ord(c) for c in match["time"]), folder
+def _exchange_submission(file: Path) -> tuple[tuple[Path, str, str] | None, tuple[str, str]]:
+    """Return the exchange folder, student and assignment of a file, None if it is of no exchange; and the time and
+    the folder of its submission."""
+    for folder in file.parents:
+        if match := _EXCHANGE.fullmatch(folder.name):
+            return (folder.parent, match["student"], match["assignment"]), (match["time"], folder.name)
+    return None, ("", "")

@@ -31,7 +31,7 @@ from coursework.gradebook.rows import (
     sheet_rows,
     short_fault,
 )
-from coursework.gradebook.submission_folders import SIDE_FILES, SubmittedFile, latest_first, submitted_file
+from coursework.gradebook.submission_folders import SIDE_FILES, SubmittedFile, latest, submitted_file
 from coursework.issuing.issued import COLUMNS
 from coursework.messages import Message
 from coursework.system.extras import NotAtHand, library
@@ -51,7 +51,8 @@ ENDINGS = (".csv", ".json", ".ipynb", ".parquet", ".xml", ".tsv")
 
 
 def find(paths: Iterable[Path]) -> Iterator[Path | Rejected]:
-    """Yield the files to read; the files of a folder in the order of their names.
+    """Yield the files to read; the files of a folder in the order of their names, without earlier submissions in a
+    folder of nbgrader's exchange.
 
     Raises
     ------
@@ -73,7 +74,7 @@ def find(paths: Iterable[Path]) -> Iterator[Path | Rejected]:
 
 def _files_below(folder: Path) -> Iterator[Path | Rejected]:
     walked_files = walked(folder)
-    files = latest_first(p for p in walked_files.files if not _is_hidden(p, folder))
+    files = latest(p for p in walked_files.files if not _is_hidden(p, folder))
     refused = [p for p in walked_files.refused if not _is_hidden(p, folder)]
     yield from (Rejected(path_text(p), LEADS_OUT) for p in refused)
     yield from (p if p.suffix.lower() in ENDINGS else _odd_file(p) for p in files if p.name not in SIDE_FILES)

@@ -66,16 +66,19 @@ def test_files_that_a_tree_keeps_beside_are_no_rows_and_the_time_is_kept(tmp_pat
     assert book.seen == (f"{tmp_path / 'submitted'} is nbgrader's tree of submissions, 1 file",)
 
 
-def test_of_an_exchange_what_was_handed_in_last_counts(tmp_path):
-    for time, answer in (("09:00:00", "1"), ("11:00:00", "111.535"), ("10:00:00", "2")):
-        write(
-            tmp_path, f"inbound/adoe+week3+2026-11-22 {time} UTC+{answer}/slotted.ipynb", notebook(rA=answer)
-        )
+def test_of_an_exchange_the_last_submission_alone_counts(tmp_path):
+    """An earlier one is no rejected row, even if it cannot be read or answers more; of another assignment it stays."""
+    for time, content in (
+        ("09:00:00", notebook(rA="1", theta4="72")),
+        ("11:00:00.5", notebook(rA="111.535")),
+        ("11:00:00", "no notebook"),
+    ):
+        write(tmp_path, f"inbound/adoe+week3+2026-11-22 {time} UTC+a/slotted.ipynb", content)
+    write(tmp_path, "inbound/adoe+week2+2026-11-23 09:00:00 UTC/other.ipynb", notebook(seed=5, rA="2"))
     book = graded(tmp_path / "out", tmp_path / "inbound")
-    (mark,) = table(tmp_path / "out/marks/marks.csv")
-    assert (mark["answer"], mark["submitted"]) == ("111.535", "2026-11-22 11:00:00 UTC")
-    assert sorted(r.row["answer"] for r in book.rejected) == ["1", "2"]
-    assert all("which is marked" in r.reason for r in book.rejected)
+    marks = {m["part"]: (m["answer"], m["submitted"]) for m in table(tmp_path / "out/marks/marks.csv")}
+    assert marks["rA"] == ("111.535", "2026-11-22 11:00:00.5 UTC")
+    assert (book.rows_in, book.rejected, book.review_count) == (2, [], 0)
 
 
 CLASS = {"Ann Doe": {"ID": "4711", "login": "adoe"}, "Bob Ray": {"ID": "4712", "login": "bray"}}
