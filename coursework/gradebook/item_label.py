@@ -39,6 +39,12 @@ NO_LABEL = Message(
 )
 
 
+def languages_in(text: str) -> tuple[str, ...]:
+    """Return the languages of the labels in a question's text: several where a platform shows all languages of a
+    question at once."""
+    return tuple(dict.fromkeys(match["lang"] for match in _LABEL.finditer(text) if match["lang"]))
+
+
 def label_in(text: str) -> ItemLabel | None:
     """Return the last label in a question's text, since figures or data may look alike; None if there is
     none."""

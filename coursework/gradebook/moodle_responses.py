@@ -13,7 +13,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from typing import NamedTuple
 
 from coursework.errors import counted
-from coursework.gradebook.item_label import NO_LABEL, ItemLabel, label_in
+from coursework.gradebook.item_label import NO_LABEL, ItemLabel, label_in, languages_in
 from coursework.gradebook.rows import AnswerRow, PlatformFile, Rejected, RowOrigin
 from coursework.gradebook.stack_responses import stack_answers
 from coursework.issuing.identity import EMAIL, FIRST_NAME, SURNAME, WHOLE, identifies, is_called
@@ -194,6 +194,7 @@ def _response(
             yield Rejected(location, NO_LABEL, {"student": student, "answer": text})
         return
     origin = origin._replace(version=label.version, apart=bool(label.part))
+    shows_all = len(languages_in(question)) > 1
 
     def row(part: str, answer: str) -> AnswerRow:
         return AnswerRow(
@@ -201,7 +202,7 @@ def _response(
             label.exercise,
             label.seed,
             part,
-            answer,
+            _letters_of(answer) if shows_all else answer,
             f"{location}, {part}",
             warning,
             label.lang,
@@ -223,6 +224,16 @@ def _response(
             "person"
         )
         yield Rejected(location, reason, columns)
+
+
+_LETTERED = re.compile(r"(?:\A|(?<=[\s;]))([a-z])\) ")
+
+
+def _letters_of(answer: str) -> str:
+    """Return the letters of cases that are written in several languages, ``b) swings b) oscille``; another answer as
+    it is."""
+    letters = dict.fromkeys(_LETTERED.findall(answer))
+    return ", ".join(letters) if _LETTERED.match(answer) else answer
 
 
 _FIRST = re.compile(r"(?P<before>[^\d:;]{1,30}?)1(?P<colon>\s*[:：])")

@@ -41,9 +41,11 @@ def export(
         for pool in reversed(pools)
         for loss in losses(pool, platform.name, platform.losses(pool))
     }
-    files = [file for pool in pools for file in platform.files(pool)]
     return Export(
-        (*files, *_common_files(platform, drawn, students, tuple(lost.values()), spreadsheet)),
+        (
+            *platform.files_of(pools),
+            *_common_files(platform, drawn, students, tuple(lost.values()), spreadsheet),
+        ),
         tuple(lost.values()),
     )
 

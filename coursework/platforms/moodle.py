@@ -9,19 +9,22 @@ from __future__ import annotations
 import base64
 import hashlib
 import io
+import json
 import math
+import re
 import zlib
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from decimal import ROUND_UP, Decimal
 from fractions import Fraction
 from functools import partial
 from pathlib import Path
+from typing import Any
 from xml.dom.minidom import Document, Element
 
 from coursework.language.numbers import plain
 from coursework.language.words import words
-from coursework.platforms.items import Item, Pool
-from coursework.platforms.pieces import Image, PagePieces, with_files
+from coursework.platforms.items import SEPARATOR, Item, Pool
+from coursework.platforms.pieces import PagePieces, with_files
 from coursework.platforms.platform import Platform
 from coursework.platforms.posed import CHOICE, CHOICES, COLLECTED, NUMBER, Interval, Posed
 from coursework.system.writing import File
@@ -40,29 +43,73 @@ _WIDE = {"wide": 30, "line": 50, "lines": 60}  #: characters that a box of such 
 _BOX = "\N{OBJECT REPLACEMENT CHARACTER}"  #: placeholder of a box
 
 
+_LARGEST_FILE = 2_000_000  #: bytes of a file to import: a PHP as it is installed takes 2 MiB
+_SPAN = re.compile(r"(</?)span\b")
+
+
 class Moodle(Platform):
     name = "moodle"
 
     def content(self, item: Item, pieces: PagePieces) -> bytes:
-        return zlib.compress(_lines(_question(Document(), item, pieces)))
+        return zlib.compress(json.dumps(_pieces_of(item, pieces)).encode())
 
     def files(self, pool: Pool) -> Iterator[File]:
-        yield File(Path(f"{pool.name}.{pool.lang}.xml"), partial(quiz, pool))
+        return self.files_of([pool])
+
+    def files_of(self, pools: Sequence[Pool]) -> Iterator[File]:
+        """Yield the files of one quiz: each question carries the languages of all pools, of which Moodle's filter
+        ``multilang`` shows the student's own."""
+        languages = "-".join(pool.lang for pool in pools)
+        batches = list(_batches(pools))
+        for number, batch in enumerate(batches, start=1):
+            part = f".{number:0{len(str(len(batches)))}}" if len(batches) > 1 else ""
+            yield File(Path(f"{pools[0].name}.{languages}{part}.xml"), partial(quiz, *pools, batch=batch))
 
 
 PLATFORM = Moodle()
 
+Batch = Sequence[tuple[int, int, int]]  #: section, and its first item and the one after its last
 
-def quiz(pool: Pool) -> Iterator[bytes]:
-    """Yield the file to import, question by question."""
+
+def quiz(*pools: Pool, batch: Batch = ()) -> Iterator[bytes]:
+    """Yield the file to import, question by question: those of ``batch``, or all."""
     yield b'<?xml version="1.0" encoding="utf-8"?>\n<quiz>\n'
-    for section in pool.sections:
-        yield _lines(
-            _category(Document(), (pool.title, f"{section.title} ({section.exercise}, {pool.lang})"))
-        )
-        for item in section.items:
-            yield zlib.decompress(item.content)
+    for position, first, end in batch or [(k, 0, len(s.items)) for k, s in enumerate(pools[0].sections)]:
+        yield _lines(_category(Document(), _category_names(pools, position)))
+        for k in range(first, end):
+            yield _question_lines(pools, position, k)
     yield b"</quiz>\n"
+
+
+def _batches(pools: Sequence[Pool]) -> Iterator[Batch]:
+    """Yield the questions of each file, as many as fit into one."""
+    batch: list[tuple[int, int, int]] = []
+    size = 0
+    for position, section in enumerate(pools[0].sections):
+        for k in range(len(section.items)):
+            bytes_of_question = len(_question_lines(pools, position, k))
+            if batch and size + bytes_of_question > _LARGEST_FILE:
+                yield batch
+                batch, size = [], 0
+            size += bytes_of_question
+            if batch and batch[-1][0] == position:
+                batch[-1] = (position, batch[-1][1], k + 1)
+            else:
+                batch.append((position, k, k + 1))
+    yield batch
+
+
+def _category_names(pools: Sequence[Pool], position: int) -> tuple[str, str]:
+    titles = dict.fromkeys(pool.sections[position].title for pool in pools)
+    languages = ", ".join(pool.lang for pool in pools)
+    names = " / ".join(dict.fromkeys(pool.title for pool in pools))
+    return names, f"{' / '.join(titles)} ({pools[0].sections[position].exercise}, {languages})"
+
+
+def _question_lines(pools: Sequence[Pool], position: int, k: int) -> bytes:
+    """Return a question of a section in the languages of the pools, a line for each element."""
+    contents = [pool.sections[position].items[k].content for pool in pools]
+    return _lines(_question(Document(), [json.loads(zlib.decompress(content)) for content in contents]))
 
 
 def _lines(question: Element) -> bytes:
@@ -80,88 +127,164 @@ def _category(page: Document, names: Sequence[str]) -> Element:
     return question
 
 
-def _question(page: Document, item: Item, pieces: PagePieces) -> Element:
-    html, images = _page(item, pieces)
+def _question(page: Document, languages: Sequence[Mapping[str, Any]]) -> Element:
+    first, codes = languages[0], [pieces["lang"] for pieces in languages]
     question = _element(page, page, "question", type="cloze")
-    _text(_element(question, page, "name"), page, item.label[1:-1])
+    _text(_element(question, page, "name"), page, SEPARATOR.join((first["code"], *codes)))
     text_element = _element(question, page, "questiontext", format="html")
-    _text(text_element, page, html)
-    for image in images:
-        data = base64.b64encode(image.data).decode()
-        file = _element(text_element, page, "file", name=image.name, path="/", encoding="base64")
+    _text(text_element, page, _page(languages))
+    images = {name: data for pieces in languages for name, data in pieces["images"].items()}
+    for name, data in images.items():
+        file = _element(text_element, page, "file", name=name, path="/", encoding="base64")
         file.appendChild(page.createTextNode(data))
-    _element(question, page, "idnumber").appendChild(page.createTextNode(_idnumber(item.identifier)))
+    identifier = f"{first['identifier'].removesuffix(first['lang'])}{'-'.join(codes)}"
+    _element(question, page, "idnumber").appendChild(page.createTextNode(_idnumber(identifier)))
     return question
 
 
-def _page(item: Item, pieces: PagePieces) -> tuple[str, tuple[Image, ...]]:
-    """Return statement and questions with their boxes, and the statement's pictures."""
-    questions = (
-        f'<div style="margin-top: 1em">{_question_html(posed, pieces)}</div>' for posed in item.questions
+def _page(languages: Sequence[Mapping[str, Any]]) -> str:
+    """Return statement and questions with their boxes; where languages differ, each between marks of its own."""
+    codes = [pieces["lang"] for pieces in languages]
+    join = partial(_in_languages, codes)
+    attribute = f' lang="{codes[0]}"' if len(codes) == 1 else ""
+    html = [f"<div{attribute}>", _braced(join([pieces["opening"] for pieces in languages]))]
+    for same in zip(*(pieces["questions"] for pieces in languages), strict=True):
+        head, left, right = (_braced(join([q[part] for q in same])) for part in ("head", "left", "right"))
+        html += [
+            _QUESTION,
+            head,
+            same[0]["open"],
+            left,
+            _box([q["box"] for q in same], join),
+            right,
+            same[0]["close"],
+        ]
+    return "".join((*html, "</div>"))
+
+
+_QUESTION = '<div style="margin-top: 1em">'
+
+
+def _in_languages(codes: Sequence[str], texts: Sequence[str]) -> str:
+    """Return a text, or the texts of several languages as Moodle's core filter ``multilang`` reads them. That filter
+    ends a language at the next ``</span>``: other elements of this name get another."""
+    if len(set(texts)) == 1:
+        return texts[0]
+    texts = [_SPAN.sub(r"\1bdi", text) for text in texts]
+    return " ".join(
+        f'<span lang="{code}" class="multilang">{text}</span>'
+        for code, text in zip(codes, texts, strict=True)
     )
-    page_html = f'<div lang="{pieces.lang}">{pieces.opening(item)}{"".join(questions)}</div>'
-    html, images = with_files(page_html, "@@PLUGINFILE@@/{}")
-    for plain_tag, styled in _STYLES.items():
-        html = html.replace(plain_tag, styled)
+
+
+def _braced(html: str) -> str:
+    """Return HTML whose braces open no box."""
+    return html.replace("{", "&#123;").replace("}", "&#125;")
+
+
+def _pieces_of(item: Item, pieces: PagePieces) -> dict[str, Any]:
+    """Return what a question says in one language: plain data."""
+    images: dict[str, str] = {}
+
+    def styled(html: str) -> str:
+        html, found = with_files(html, "@@PLUGINFILE@@/{}")
+        images.update((image.name, base64.b64encode(image.data).decode()) for image in found)
+        for plain_tag, styled_tag in _STYLES.items():
+            html = html.replace(plain_tag, styled_tag)
+        return html
+
     scale = _scale(posed.points for posed in item.questions)
-    boxes = (_box(posed, round(posed.points * scale), pieces) for posed in item.questions)
-    return _filled(html, boxes), images
+    opening = styled(pieces.opening(item))
+    return {
+        "lang": pieces.lang,
+        "code": item.label[1:-1].removesuffix(f"{SEPARATOR}{pieces.lang}"),
+        "identifier": item.identifier,
+        "opening": opening,
+        "questions": [
+            {
+                **_around_box(posed, pieces, styled),
+                "box": _box_content(posed, round(posed.points * scale), pieces),
+            }
+            for posed in item.questions
+        ],
+        "images": images,
+    }
 
 
-def _filled(html: str, boxes: Iterable[str]) -> str:
-    """Return the page with its boxes; braces of the page itself are escaped."""
-    first, *rest = html.replace("{", "&#123;").replace("}", "&#125;").split(_BOX)
-    return first + "".join(box + text for box, text in zip(boxes, rest, strict=True))
-
-
-def _question_html(posed: Posed, pieces: PagePieces) -> str:
-    """Return a question with a placeholder for its box."""
+def _around_box(posed: Posed, pieces: PagePieces, styled: Callable[[str], str]) -> dict[str, str]:
+    """Return what stands before a question's box, beside it and behind it; the paragraph of the box is cut off, so
+    that each piece is whole."""
     if posed.kind in (CHOICE, CHOICES):
-        return f"{pieces.prompt(posed)}<div>{_BOX}</div>"
-    return pieces.prompt(posed, box=_BOX)
+        head, left, right = pieces.prompt(posed), "", ""
+        opens, closes = "<div>", "</div></div>"
+    else:
+        before, right = pieces.prompt(posed, box=_BOX).split(_BOX)
+        head, opens, left = before.rpartition("<p>")
+        right, closes, rest = right.partition("</p>")
+        closes += f"{rest}</div>"
+    return {
+        "head": styled(head),
+        "open": opens,
+        "left": styled(left),
+        "right": styled(right),
+        "close": closes,
+    }
 
 
 # --------------------------------------------------------------------------- cloze
 
 
-def _box(posed: Posed, weight: int, pieces: PagePieces) -> str:
-    """Return a question's box in cloze syntax. A collected answer has weight zero: the quiz counts the points
-    that Moodle judges."""
+def _box_content(posed: Posed, weight: int, pieces: PagePieces) -> dict[str, Any]:
+    """Return a question's box: its weight, its type, and of each answer its share, itself and its feedback. A collected
+    answer has weight zero: the quiz counts the points that Moodle judges."""
     if posed.kind == NUMBER:
-        return _cloze(weight, "NUMERICAL", (_number(option, pieces) for option in posed.intervals))
+        answers = [
+            (_worth(one.share), ":".join(numerical(one)), pieces.inline(one.message) if one.message else "")
+            for one in posed.intervals
+        ]
+        return {"weight": weight, "type": "NUMERICAL", "answers": answers}
     if posed.kind == COLLECTED:
-        return _cloze(0, "SHORTANSWER", _collected_answer(posed, words(pieces.lang)["platforms"]["moodle"]))
-    kind = "MULTICHOICE_V" if posed.kind == CHOICE else "MULTIRESPONSE"
-    answers = (
-        _answer(
-            option.share, escaped(pieces.option(option)), option.message, pieces, is_full=posed.kind == CHOICE
+        texts = words(pieces.lang)["platforms"]["moodle"]
+        answers = [("=", str(texts["later"]), ""), ("%50%", "*", str(texts["kept"]))]
+        return {
+            "weight": 0,
+            "type": "SHORTANSWER",
+            "answers": answers,
+            "wide": _WIDE.get(posed.question.box, 0),
+        }
+    answers = [
+        (
+            _worth(one.share, is_full=posed.kind == CHOICE),
+            pieces.option(one),
+            pieces.inline(one.message) if one.message else "",
         )
-        for option in posed.options
-    )
-    return _cloze(weight, kind, answers)
+        for one in posed.options
+    ]
+    kind = "MULTICHOICE_V" if posed.kind == CHOICE else "MULTIRESPONSE"
+    return {"weight": weight, "type": kind, "answers": answers}
 
 
-def _collected_answer(posed: Posed, texts: Mapping[str, str]) -> tuple[str, str]:
-    """Return the right answer and the catch-all of a collected answer; the box is as wide as the longest
-    text."""
-    later = texts["later"].ljust(_WIDE.get(posed.question.box, 0), "\N{NO-BREAK SPACE}")
-    return f"={escaped(later)}", f"%50%*#{escaped(texts['kept'])}"
+def _box(boxes: Sequence[Mapping[str, Any]], join: Callable[[Sequence[str]], str]) -> str:
+    """Return a box in cloze syntax, with the texts of all languages. The right answer of a collected one is plain text,
+    as wide as the box is to be."""
+    first, answers = boxes[0], []
+    for same in zip(*(box["answers"] for box in boxes), strict=True):
+        texts = [text for _, text, _ in same]
+        if "wide" in first:
+            answer = " / ".join(dict.fromkeys(texts)).ljust(
+                first["wide"] if texts[0] != "*" else 0, "\N{NO-BREAK SPACE}"
+            )
+        else:
+            answer = texts[0] if first["type"] == "NUMERICAL" else join(texts)
+        feedback = join([says for *_, says in same])
+        answer = answer if first["type"] == "NUMERICAL" else escaped(answer)
+        answers.append(f"{same[0][0]}{answer}#{escaped(feedback)}" if feedback else f"{same[0][0]}{answer}")
+    return f"{{{first['weight']}:{first['type']}:{'~'.join(answers)}}}"
 
 
-def _cloze(weight: int, kind: str, answers: Iterable[str]) -> str:
-    return f"{{{weight}:{kind}:{'~'.join(answers)}}}"
-
-
-def _number(interval: Interval, pieces: PagePieces) -> str:
-    text, margin = numerical(interval)
-    return _answer(interval.share, f"{text}:{margin}", interval.message, pieces)
-
-
-def _answer(share: float, answer: str, feedback: str, pieces: PagePieces, *, is_full: bool = True) -> str:
-    """Return one answer of a box with its share, ``=`` for the full share of a single answer, and its
-    feedback."""
-    worth = "=" if is_full and share == 1 else f"%{_percent(share)}%"
-    return f"{worth}{answer}#{escaped(pieces.inline(feedback))}" if feedback else worth + answer
+def _worth(share: float, *, is_full: bool = True) -> str:
+    """Return the share of an answer, ``=`` for the full share of a single one."""
+    return "=" if is_full and share == 1 else f"%{_percent(share)}%"
 
 
 def _percent(share: float) -> str:

@@ -38,6 +38,10 @@ class Platform(ABC):
     def files(self, pool: Pool) -> Iterator[File]:
         """Yield the files to import, for a pool in one language; paths are below the export's folder."""
 
+    def files_of(self, pools: Sequence[Pool]) -> Iterator[File]:
+        """Yield the files to import, for a pool in several languages: those of each language."""
+        return (file for pool in pools for file in self.files(pool))
+
     def item_losses(self, item: Item) -> Iterable[Loss]:
         """Return further losses that depend on a variant's values."""
         return ()

@@ -107,6 +107,8 @@ def _features(variant: Variant, key: Key, part: Part) -> Iterator[str]:
     """Yield the features of our marking of a part that a platform may lack."""
     if why := _why_collected(variant, key, part):
         yield from ("collected", why)
+        if part.sort.box in ("line", "lines"):
+            yield "less_than"
     elif part.sort.is_scalar:
         yield "unreadable"
         if not part.is_exact:

@@ -6,6 +6,7 @@
 //   answer  {"lang", "attempts": [{"id", "data"}]}      attempts of questions by the question engine: points of each box
 //   quiz    {"course", "name", "slots": [{"category", "mark"}], "students": [{...}], "attempts": [...]}
 //   finish  {"attempts": [{"attempt", "answers": {slot: {place: answer}}}]}    answers given, attempt submitted
+//   filter  {"name", "on"}                              a filter of texts is switched on or off for the whole site
 //   reset   {"course"}                                  the course is deleted
 
 define('CLI_SCRIPT', true);
@@ -19,7 +20,8 @@ require_once($CFG->dirroot . '/question/format/xml/format.php');
 set_debugging(DEBUG_DEVELOPER, true);
 \core\session\manager::set_user(get_admin());
 $asked = json_decode(stream_get_contents(STDIN), true);
-$verbs = ['import' => 'import', 'answer' => 'answer', 'quiz' => 'quiz', 'finish' => 'finish', 'reset' => 'forget'];
+$verbs = ['import' => 'import', 'answer' => 'answer', 'quiz' => 'quiz', 'finish' => 'finish', 'reset' => 'forget',
+    'filter' => 'filtering'];
 echo json_encode($verbs[$argv[1]]($asked), JSON_UNESCAPED_UNICODE | JSON_PARTIAL_OUTPUT_ON_ERROR | JSON_THROW_ON_ERROR), "\n";
 
 function course_of(string $name): stdClass {
@@ -32,6 +34,12 @@ function forget(array $asked): array {
     global $DB;
     $course = $DB->get_record('course', ['shortname' => $asked['course']]);
     return ['deleted' => $course ? delete_course($course, false) : false];
+}
+
+function filtering(array $asked): array {
+    require_once($GLOBALS['CFG']->libdir . '/filterlib.php');
+    filter_set_global_state($asked['name'], $asked['on'] ? TEXTFILTER_ON : TEXTFILTER_DISABLED);
+    return ['on' => $asked['on']];
 }
 
 function import(array $asked): array {
@@ -164,9 +172,10 @@ function attempted(int $quizid, stdClass $user, array $asked): array {
     $posed = [];
     foreach ($object->get_slots() as $slot) {
         $posed[$slot] = $object->get_question_attempt($slot)->get_question()->name;
+        $shown[$slot] = $object->get_question_attempt($slot)->get_question_summary();
     }
     \core\session\manager::set_user(get_admin());
-    return ['attempt' => (int) $attempt->id, 'posed' => $posed];
+    return ['attempt' => (int) $attempt->id, 'posed' => $posed, 'shown' => $shown];
 }
 
 function finish(array $asked): array {

@@ -6,6 +6,7 @@ a course of its own, deleted at the end. ``COURSEWORK_MOODLE_ADMIN``, ``name:pas
 
 from __future__ import annotations
 
+import csv
 import html
 import os
 import re
@@ -15,9 +16,11 @@ from pathlib import Path
 
 import pytest
 from clients.answer_samples import answers_to
-from clients.moodle_site import MOODLE, ask
+from clients.moodle_site import ADMIN, MOODLE, Site, ask
 
 import coursework
+from coursework.gradebook.grading import grade_files
+from coursework.platforms.exporting import export
 from coursework.platforms.items import item as item_of
 from coursework.platforms.losses import losses
 from coursework.platforms.moodle import PLATFORM, quiz
@@ -166,7 +169,7 @@ def test_hostile_labels_and_odd_shares_come_through(tmp_path):
     choice, pieces = given.questions[-1], PagePieces(pool.folders, "en")
     labels = [re.sub(r"([\\`*_{}\[\]<>#~$&])", r"\\\1", f"{HOSTILE} {k}") for k in range(len(choice.options))]
     options = tuple(
-        replace(one, label=label, share=one.share or 0.3712345, says=label)
+        replace(one, label=label, share=one.share or 0.3712345, message=label)
         for one, label in zip(choice.options, labels, strict=True)
     )
     hostile = replace(given, questions=(*given.questions[:-1], replace(choice, options=options)))
@@ -184,3 +187,63 @@ def test_hostile_labels_and_odd_shares_come_through(tmp_path):
 
 def _shown(text):
     return html.unescape(text)
+
+
+@pytest.mark.parametrize("filtered", [True, False], ids=["multilang on", "multilang off"])
+@pytest.mark.skipif(not ADMIN, reason="COURSEWORK_MOODLE_ADMIN names no administrator")
+def test_a_french_and_an_english_student_have_one_quiz(tmp_path, filtered):
+    """Each reads every question in their own language (both if the filter is off); both reports are marked alike."""
+    names = ["slotted_mechanism", "grashof", "four_bar_positions"]
+    drawn = of_exercises(COURSE, names, 2, 0, LANGS, None)
+    course = f"{NAME}_two_languages_{int(filtered)}"
+    ask("reset", course=course)
+    ask("filter", name="multilang", on=filtered)
+    categories = {}
+    for file in export(PLATFORM, drawn).files:
+        path = tmp_path / file.path
+        path.write_bytes(b"".join(made) if not isinstance(made := file.make(), bytes) else made)
+        if path.suffix == ".xml":
+            told = ask("import", course=course, file=str(path))
+            assert (told["done"], told["said"]) == (True, "")
+            categories |= {q["category"]: (q["categoryid"], q["defaultmark"]) for q in told["questions"]}
+    assert len(categories) == len(names)
+    students = [
+        {
+            "username": f"cw_{lang}",
+            "firstname": lang,
+            "lastname": "Doe",
+            "email": f"{lang}@example.org",
+            "lang": lang,
+        }
+        for lang in LANGS
+    ]
+    slots = [{"category": category, "mark": float(mark)} for category, mark in categories.values()]
+    made = ask("quiz", course=course, name="Two languages", slots=slots, students=students)
+    items = {
+        (lang, one.label[1:-1].removesuffix(f" · {lang}")): one
+        for lang in LANGS
+        for variants in drawn.variants
+        for one in (item_of(variant.in_language(lang), drawn.name) for variant in variants)
+    }
+    attempts = []
+    for lang, student in zip(LANGS, made["students"], strict=True):
+        other = LANGS[1 - LANGS.index(lang)]
+        answers = {}
+        for slot, name in student["posed"].items():
+            code = name.removesuffix(" · en · fr")
+            shown = student["shown"][slot]
+            assert f"[{code} · {lang}]" in shown
+            assert (f"[{code} · {other}]" in shown) is not filtered
+            answers[slot] = {k: _right(p).replace(".", "." if lang == "en" else ",") if isinstance(_right(p), str) else _right(p)
+                             for k, p in enumerate(items[lang, code].questions, 1)}  # fmt: skip
+        attempts.append({"attempt": student["attempt"], "answers": answers})
+    marks = ask("finish", attempts=attempts)
+    assert marks == [pytest.approx(sum(slot["mark"] for slot in slots))] * 2
+    report = tmp_path / "responses.csv"
+    report.write_bytes(Site(*ADMIN.split(":")).responses(made["cmid"]))
+    book = grade_files(COURSE, [report], tmp_path / "issued.json", tmp_path / "marks", feedback=False)
+    assert (book.rejected, len(book.students)) == ([], 2)
+    judged = {q.question.id for one in items.values() for q in one.questions if q.kind != COLLECTED}
+    with (tmp_path / "marks/marks.csv").open(encoding="utf-8-sig") as file:
+        wrong = [row for row in csv.DictReader(file) if row["part"] in judged and row["verdict"] != "correct"]
+    assert wrong == []

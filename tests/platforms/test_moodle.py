@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import base64
 import re
-import zlib
 from dataclasses import replace
 from xml.etree import ElementTree
 from xml.parsers import expat
@@ -15,7 +14,8 @@ from tables import each_row
 
 import coursework
 from coursework.language.words import words
-from coursework.platforms.items import item
+from coursework.platforms import moodle
+from coursework.platforms.items import Pool, item, section
 from coursework.platforms.moodle import PLATFORM, escaped, numerical, quiz
 from coursework.platforms.pieces import PagePieces
 from coursework.platforms.pools import of_exercises
@@ -122,9 +122,69 @@ def test_a_long_name_of_a_pool_leaves_identifiers_short_and_different(written):
     pieces, ids = PagePieces(FOLDERS, "en"), set()
     for tail in "ab":
         made = PLATFORM.made(replace(given, pool="week " * 40 + tail), pieces)
-        ids |= {one[1] for one in questions(zlib.decompress(made.content).join((b"<quiz>", b"</quiz>")))}
+        pool = Pool("", "", "en", (section([made]),), FOLDERS, COURSE.folder.root)
+        ids |= {one[1] for one in questions(b"".join(quiz(pool))) if one[0] != "category"}
     assert {len(one) for one in ids} == {100}
     assert len(ids) == 2
+
+
+#: The pattern and the choice of Moodle's filter_multilang.
+SPAN = r'<span(?:\s+lang="[a-zA-Z0-9_-]+"|\s+class="multilang"){2}\s*>.*?</span>'
+BLOCK = re.compile(rf"({SPAN})(\s*{SPAN})+", re.IGNORECASE | re.DOTALL)
+ONE = re.compile(
+    r'<(?:lang|span)[^>]+lang="([a-zA-Z0-9_-]+)"[^>]*>(.*?)</(?:lang|span)>', re.IGNORECASE | re.DOTALL
+)
+
+
+def filtered(text, lang):
+    return BLOCK.sub(lambda block: dict(ONE.findall(block[0]))[lang], text)
+
+
+def check_two_languages(names, tmp_path):
+    """What a student reads in a quiz of two languages is what a quiz of their language says, and the boxes judge alike."""
+    drawn = of_exercises(COURSE, names, 1, 0, LANGS, None)
+    both = b"".join(quiz(*(drawn.pool(lang, PLATFORM) for lang in LANGS)))
+    found = [one for one in questions(both) if one[0] != "category"]
+    for lang in LANGS:
+        single = [one for one in questions(written_of(drawn, lang)) if one[0] != "category"]
+        for one, other in zip(single, found, strict=True):
+            boxes, around = boxes_of(other[2])
+            expected_boxes, expected = boxes_of(one[2])
+            expected[0] = expected[0].replace(f'<div lang="{lang}">', "<div>", 1)
+            read = [filtered(text, lang).replace("bdi", "span") for text in around]
+            assert read == [text.replace("bdi", "span") for text in expected], (other[0], lang)
+            assert set(one[3]) <= set(other[3])
+            for box, alone in zip(boxes, expected_boxes, strict=True):
+                assert (box.kind, box.weight) == (alone.kind, alone.weight)
+                for answer, answer_alone in zip(box.answers, alone.answers, strict=True):
+                    assert (answer.share, answer.margin) == (answer_alone.share, answer_alone.margin)
+                    assert filtered(answer.says, lang).replace("bdi", "span") == answer_alone.says
+                    if box.kind != "SHORTANSWER":
+                        assert filtered(answer.text, lang).replace("bdi", "span") == answer_alone.text
+
+
+def test_a_question_in_two_languages_says_in_each_what_one_of_it_says(tmp_path):
+    check_two_languages(["slotted_mechanism", "grashof", "crank_shaper_drawn"], tmp_path)
+
+
+@pytest.mark.sweep
+@every_exercise
+def test_every_question_in_two_languages_says_in_each_what_one_of_it_says(name, tmp_path):
+    check_two_languages([name], tmp_path)
+
+
+def test_files_are_small_and_hold_every_question_once(monkeypatch):
+    drawn = of_exercises(COURSE, ["grashof", "slotted_mechanism"], 3, 0, LANGS, None)
+    pools = [drawn.pool(lang, PLATFORM) for lang in LANGS]
+    whole = [one for one in questions(b"".join(quiz(*pools))) if one[0] != "category"]
+    largest = max(len(b"".join(quiz(*pools, batch=[(1, k, k + 1)]))) for k in range(3))
+    monkeypatch.setattr(moodle, "_LARGEST_FILE", 2 * largest)
+    files = {str(file.path): b"".join(file.make()) for file in PLATFORM.files_of(pools)}
+    assert [*files] == [f"coursework.en-fr.{k}.xml" for k in range(1, len(files) + 1)]
+    assert len(files) > 1
+    assert max(map(len, files.values())) < 2 * largest + 1000
+    assert [one for data in files.values() for one in questions(data) if one[0] != "category"] == whole
+    assert all(next(questions(data))[0] == "category" for data in files.values())
 
 
 def test_texts_come_in_one_piece():
