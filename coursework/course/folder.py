@@ -107,7 +107,9 @@ class Folder:
         topics = [
             p
             for p in sorted(top.glob("*/"))
-            if p.is_dir() and not (p / "__init__.py").exists() and p != self.lesson_place
+            if p.is_dir()
+            and not (p / "__init__.py").exists()
+            and p not in (self.lesson_place, self.book_place)
         ]
         modules: dict[str, Path] = {}
         for folder in (top, *topics):
@@ -201,6 +203,24 @@ class Folder:
         except (ValueError, RecursionError) as fault:
             raise BadCourse(f"{path}: {fault}") from fault
 
+    def book_table(self, name: str) -> Mapping[str, Any]:
+        """Return the content of ``exercises/book/NAME.toml``, a table of the book; empty where there is none.
+
+        Raises
+        ------
+        BadCourse
+            It is no TOML.
+        """
+        import tomllib
+
+        path = self.book_place / f"{name}.toml"
+        if not path.exists():
+            return {}
+        try:
+            return tomllib.loads(path.read_text("utf-8-sig"))
+        except (ValueError, RecursionError) as fault:
+            raise BadCourse(f"{self.relative(path)}: {fault}") from fault
+
     @cached_property
     def languages(self) -> tuple[str, ...]:
         """The languages that the course speaks, its own first: those that it states, else every one of the engine.
@@ -283,6 +303,11 @@ class Folder:
     def lesson_place(self) -> Path:
         """The folder of the lessons' texts, whether it is there or not."""
         return self.root / "exercises" / "lessons"
+
+    @property
+    def book_place(self) -> Path:
+        """The folder of what the book has besides lessons and exercises, whether it is there or not."""
+        return self.root / "exercises" / "book"
 
     @cached_property
     def chapters(self) -> tuple[Chapter, ...]:

@@ -119,8 +119,8 @@ _WHOLE = 24  #: characters of a formula written out that a line of text does not
 
 
 @lru_cache(maxsize=4096)
-def typst_formula(tex: str, lang: str, *, display: bool = False) -> str:
-    """Return a formula as Typst markup, with its words as alternative text.
+def typst_formula(tex: str, lang: str, *, display: bool = False, number: str = "") -> str:
+    """Return a formula as Typst markup, with its words as alternative text; a displayed one may bear a number.
 
     The semicolon ends the call: a parenthesis that follows it in the text is text.
     """
@@ -128,7 +128,8 @@ def typst_formula(tex: str, lang: str, *, display: bool = False) -> str:
 
     call = "display-formula" if display else "formula"
     full = ", whole: true" if not display and len(to_line(tex, lang)) <= _WHOLE else ""
-    return f"#{call}({typst_string(spoken(tex, lang))}, ${to_typst(tex, lang)}${full});"
+    told = f", number: {typst_string(number)}" if number else ""
+    return f"#{call}({typst_string(spoken(tex, lang))}, ${to_typst(tex, lang)}${full}{told});"
 
 
 #: A text that is one formula, as most answers are, is read at a glance.
@@ -191,7 +192,7 @@ def _typst(node: SyntaxTreeNode, lang: str) -> str:
         case "math_inline":
             return typst_formula(node.content.strip(), lang)
         case "math_inline_double" | "math_block" | "math_block_label":
-            return typst_formula(node.content.strip(), lang, display=True) + "\n\n"
+            return typst_formula(node.content.strip(), lang, display=True, number=_number(node)) + "\n\n"
         case "bullet_list":
             return items("-")
         case "ordered_list":
@@ -212,6 +213,11 @@ def _typst(node: SyntaxTreeNode, lang: str) -> str:
     raise BadStatement(f"the text holds a {node.type}, which a sheet cannot print")
 
 
+def _number(formula: SyntaxTreeNode) -> str:
+    """Return the number that follows a displayed formula, ``$$…$$ (3.4)``."""
+    return formula.info if formula.type == "math_block_label" else ""
+
+
 def _leads(node: SyntaxTreeNode) -> bool:
     """Return whether a paragraph precedes a displayed formula or a table."""
     after = node.next_sibling
@@ -225,6 +231,8 @@ INDEX = "#index"
 def _typst_link(href: str, title: str, inside: str) -> str:
     if href == INDEX:
         return f"#term({typst_string(title)}, {typst_string(bare_letters(title))})[{inside}];"
+    if href.startswith("#") and title:  # a place of the book, with what paper calls it
+        return f"#cited({typst_string(unquote(href[1:]))}, [{inside}], {typst_string(title)});"
     position = f"label({typst_string(unquote(href[1:]))})" if href.startswith("#") else typst_string(href)
     return f"#link({position})[{inside}];"
 
@@ -290,6 +298,11 @@ def _html_reader(lang: str) -> MarkdownIt:
     def formula(display: bool) -> Callable[..., str]:
         return lambda renderer, tokens, at, *_: to_mathml(tokens[at].content.strip(), lang, display)
 
+    def numbered(renderer: RendererHTML, tokens: Sequence, at: int, *_: object) -> str:
+        number = escape(tokens[at].info)
+        math = to_mathml(tokens[at].content.strip(), lang, True)
+        return f'<div class="numbered" id="equation-{number}">{math}<span>({number})</span></div>\n'
+
     def text(renderer: RendererHTML, tokens: Sequence, at: int, *_: object) -> str:
         return html_text(tokens[at].content, lang)
 
@@ -313,8 +326,9 @@ def _html_reader(lang: str) -> MarkdownIt:
     reader.use(dollarmath_plugin, allow_digits=True, double_inline=True)
     reader.add_render_rule("link_open", link)
     reader.add_render_rule("link_close", link)
-    for name in ("math_block", "math_block_label", "math_inline_double"):
+    for name in ("math_block", "math_inline_double"):
         reader.add_render_rule(name, formula(True))
+    reader.add_render_rule("math_block_label", numbered)
     reader.add_render_rule("math_inline", formula(False))
     reader.add_render_rule("text", text)
     reader.add_render_rule("image", image)

@@ -72,7 +72,8 @@ def _typst_pieces(env: Environment, book: Book, lesson: LessonText, pieces: Sequ
         if link.name not in here[link.kind == "lesson"]:
             return link.said
         section = f"-{link.section}" if link.section else ""
-        return f"[{link.said}](#{link.kind}-{link.name}{section})"
+        named = _cited(book, lesson, link).replace('"', "")
+        return f'[{link.said}](#{link.kind}-{link.name}{section} "{typeset(named, book.lang)}")'
 
     names = _of_book(book) | {
         "lesson": lesson,
@@ -81,6 +82,19 @@ def _typst_pieces(env: Environment, book: Book, lesson: LessonText, pieces: Sequ
     }
     names["relinked"] = lambda text: relinked(text, write)
     return Markup(render(env, "book/_pieces.typ.j2", names))
+
+
+def _cited(book: Book, lesson: LessonText, link: TextLink) -> str:
+    """Return how paper names the place of a link: exercise 2.3, lesson 4 §5, or §5 in the same lesson."""
+    book_words = words(book.lang)["book"]
+    if link.kind == "exercise":
+        number = next(one.number for one in book.exercises if one.handout.exercise == link.name)
+        return str(book_words["cited_exercise"].format(number))
+    if link.name == lesson.name and link.section:
+        return str(book_words["cited_here"].format(link.section))
+    number = str(next(one.number for one in book.lessons if one.name == link.name))
+    key = "cited_section" if link.section else "cited_lesson"
+    return str(book_words[key].format(number, link.section))
 
 
 def _with_kind(piece: Piece) -> dict[str, Any]:

@@ -57,6 +57,25 @@ class DrawnPiece:
     figure: Figure | Picture | None = None
     svg: str = ""
     stills: tuple[str, ...] = ()
+    number: str = ""  #: 3.4: the fourth figure of the third lesson; empty in an example and in an answer
+
+
+@dataclass(frozen=True)
+class TablePiece:
+    """Table of a lesson, Markdown, with its number."""
+
+    text: str
+    number: str
+
+
+@dataclass(frozen=True)
+class BoxPiece:
+    """Definition or rule that stands in a box: its ``sort``, its number, its title, and its text (Markdown)."""
+
+    sort: str  #: definition or rule
+    number: str
+    title: str
+    text: str
 
 
 @dataclass(frozen=True)
@@ -84,7 +103,17 @@ class BlanksPiece:
     told: int
 
 
-Piece: TypeAlias = ProsePiece | HeadPiece | CodePiece | PrintedPiece | DrawnPiece | LaterPiece | BlanksPiece
+Piece: TypeAlias = (
+    ProsePiece
+    | HeadPiece
+    | CodePiece
+    | PrintedPiece
+    | DrawnPiece
+    | TablePiece
+    | BoxPiece
+    | LaterPiece
+    | BlanksPiece
+)
 
 
 @dataclass(frozen=True)

@@ -13,13 +13,17 @@ from coursework.course.course import Course
 from coursework.course.folder import Folder
 from coursework.course.lessons import lesson_file, lesson_sections, lesson_title, read_text, taught_by
 from coursework.errors import BadCourse, CourseworkError, counted, nearest
+from coursework.language.words import words
 from coursework.markup.links import TERM, TextLink, links
 from coursework.selfstudy.workbook import lesson_source as source
 from coursework.selfstudy.workbook.lesson_source import lines_of_words, place_of, proofread
+from coursework.selfstudy.workbook.numbering import LessonNumbers, boxes_of
 from coursework.selfstudy.workbook.running import CellOutput, CellSession, drawn
-from coursework.sheets.book import CodePiece, HeadPiece, LaterPiece, LessonText, Piece, ProsePiece
+from coursework.sheets.book import CodePiece, DrawnPiece, HeadPiece, LaterPiece, LessonText, Piece, ProsePiece
 
 _TITLE = re.compile(r"\A# +[^\n]*\n*")
+#: A paragraph, with the formulas and the words that go on after a colon or a formula.
+_EXPLAINED = re.compile(r".*?(?:(?<!:)\n\n(?!\$\$|[a-zà-ÿ])|\Z)", re.DOTALL)
 _CELL = re.compile(r"(?<!\\)\|")
 _HEAD = re.compile(r"^(##+) +(?:(\d+)\. +)?(.*?) *$", re.MULTILINE)
 
@@ -52,10 +56,10 @@ def opened(course: Course[Any], name: str, lang: str) -> LessonFile:
     text, file = read_text(path), course.folder.relative(path)
     blocks = source.blocks(text, file)
     proofread(blocks, file)
-    for words, line in lines_of_words(blocks):
-        for link in links(words):
+    for said, line in lines_of_words(blocks):
+        for link in links(said):
             if link.kind != TERM:
-                location = place_of(words, line, file, f"{link.kind}:{link.name}")
+                location = place_of(said, line, file, f"{link.kind}:{link.name}")
                 _check_link(course.folder, link, lang, location)
     return LessonFile(file, text, blocks)
 
@@ -75,10 +79,12 @@ def lesson_text(course: Course[Any], name: str, lang: str) -> LessonText:
 
 def _drawn_and_run(course: Course[Any], name: str, lang: str, lesson: LessonFile) -> LessonText:
     with CellSession(lesson.file, course.folder.root) as session:
-        created = _Lesson(course, name, lang, session)
+        number = 1 + course.folder.lessons.index(name)
+        created = _Lesson(
+            course, name, lang, session, LessonNumbers(number, lang, boxes_of(course.folder, name, lang))
+        )
         for block in _untitled(lesson.blocks):
             created.add(block)
-    number = 1 + course.folder.lessons.index(name)
     title = lesson_title(course.folder, name, lang)
     return LessonText(name, number, lang, title, tuple(created.pieces), tuple(created.answers), lesson.terms)
 
@@ -94,21 +100,37 @@ def _untitled(blocks: Sequence[source.Block]) -> Iterator[source.Block]:
 class _Lesson:
     """Pieces of a lesson, in order."""
 
-    def __init__(self, course: Course[Any], name: str, lang: str, session: CellSession):
+    def __init__(
+        self, course: Course[Any], name: str, lang: str, session: CellSession, numbers: LessonNumbers
+    ):
         self._course, self._name, self._lang, self._session = course, name, lang, session
+        self._numbers = numbers
         self.pieces: list[Piece] = []
         self.answers: list[tuple[int, tuple[Piece, ...]]] = []
 
     def add(self, block: source.Block) -> None:
         match block:
             case source.LessonProse():
-                self.pieces += _parted(block.text)
+                self._prose(block.text)
             case source.LessonImage():
-                self.pieces.append(drawn(self._course, self._name, block, self._lang))
+                picture = drawn(self._course, self._name, block, self._lang)
+                self.pieces.append(self._numbers.figure(picture))
             case source.LessonAnswer():
                 self._later((ProsePiece(block.text),))
             case source.CodeCell():
                 self._cell(block)
+
+    def _prose(self, text: str) -> None:
+        """Add running text; what explains a prediction stands with the answer that it would give away."""
+        explains = words(self._lang)["lesson"]["explains"]
+        if self.pieces and isinstance(self.pieces[-1], LaterPiece) and text.startswith(explains):
+            explained = _EXPLAINED.match(text)
+            assert explained  # what is not empty has a paragraph
+            number, told = self.answers[-1]
+            self.answers[-1] = number, (*told, *self._numbers.prose(explained[0].strip()))
+            text = text[explained.end() :].strip()
+        for piece in _parted(text):
+            self.pieces += self._numbers.prose(piece.text) if isinstance(piece, ProsePiece) else [piece]
 
     def _cell(self, cell: source.CodeCell) -> None:
         if source.NOTEBOOK in cell.tags:
@@ -116,7 +138,13 @@ class _Lesson:
         if source.SHOWN in cell.tags or source.STILL in cell.tags:
             self.pieces.append(CodePiece(cell.code))
         displayed = CellOutput() if source.STILL in cell.tags else self._session.run(cell)
-        self.pieces += displayed.now
+        if displayed.is_example:
+            self.pieces += self._numbers.example(displayed.now)
+        else:
+            self.pieces += (
+                self._numbers.figure(piece) if isinstance(piece, DrawnPiece) else piece
+                for piece in displayed.now
+            )
         if displayed.later:
             self._later(displayed.later)
 

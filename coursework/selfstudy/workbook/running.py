@@ -139,6 +139,7 @@ class CellOutput:
 
     now: tuple[Piece, ...] = ()
     later: tuple[Piece, ...] = ()
+    is_example: bool = False  #: a worked example, whose first piece has its head
 
 
 class CellSession:
@@ -184,7 +185,7 @@ class CellSession:
         if isinstance(value, PredictionTable):  # what it prints would tell what is to be predicted
             return CellOutput((), _joined((*displayed.later, *map(_listed, text))))
         now = (piece for item in displayed.now for piece in self._clean(item, cell))
-        return CellOutput((*text, *now), displayed.later)
+        return CellOutput((*text, *now), displayed.later, displayed.is_example)
 
     def _value(self, cell: CodeCell) -> Any:
         """Run the cell and return the value of its last line."""
@@ -273,7 +274,7 @@ def shows(value: Any) -> CellOutput:
     if isinstance(value, WorkedExample):
         right = "\n".join(f"- {line}" for line in value.right)
         blanks = filter(None, [value.blanks_piece])
-        return CellOutput((*_pieces(value), *blanks), (ProsePiece(right),) if right else ())
+        return CellOutput((*_pieces(value), *blanks), (ProsePiece(right),) if right else (), is_example=True)
     if isinstance(value, NotebookDisplay):
         return CellOutput(tuple(_pieces(value)))
     if isinstance(value, Animation):
