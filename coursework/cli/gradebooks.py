@@ -61,6 +61,11 @@ _SIGNS = {"point": ".", "comma": ",", None: ""}
     ),
 )
 @click.option(
+    "--provisional",
+    is_flag=True,
+    help="Write marks of students with answers that wait for a person too; by default these are left out.",
+)
+@click.option(
     "--zeros",
     is_flag=True,
     help="Write 0 for students without an answer; by default their cells stay as they are.",
@@ -74,18 +79,20 @@ def gradebook(
     score: str,
     out_of: float | None,
     decimal: str | None,
+    provisional: bool,
     zeros: bool,
 ) -> int:
     """Write the marks of the folder MARKS, made by grade, into a platform's own export of its gradebook.
 
     Only one column changes; all else keeps its bytes. Students are matched by e-mail address or number, then by name. Students who are
-    not in the export are listed and not added; students without marks are listed and stay as they are.
+    not in the export are listed and not added; students without marks are listed and stay as they are. A mark is provisional while
+    an answer waits for a person: it is named, and left out unless --provisional is given.
     """
     from coursework.gradebook.class_points import class_points
     from coursework.gradebook.platform_gradebooks import platform_gradebook
 
     chosen = platform_gradebook(platform)
-    scored = class_points(marks, score)
+    scored, status = _final(class_points(marks, score), provisional)
     if template is None:
         if platform != "moodle":
             raise BadInput(
@@ -93,7 +100,8 @@ def gradebook(
                 title_of_platform=chosen.title_of_platform,
                 download=chosen.download,
             )
-        return _write_xml(out, item, [entry for entry in scored if entry.has_answered or zeros], out_of)
+        final = [entry for entry in scored if entry.has_answered or zeros]
+        return max(_write_xml(out, item, final, out_of), status)
     from coursework.gradebook.filling import fill
     from coursework.system.writing import write_whole
 
@@ -107,7 +115,22 @@ def gradebook(
         out=out,
         total=_of(filled, scored),
     )
-    return _print_filled(filled, out)
+    return max(_print_filled(filled, out), status)
+
+
+def _final(scored: Sequence[Scored], provisional: bool) -> tuple[Sequence[Scored], int]:
+    """Return the marks to write, and the status: name those that are provisional, and leave them out unless they are
+    wanted."""
+    waiting = [entry.name for entry in scored if entry.open]
+    if not waiting:
+        return scored, DONE
+    warn(
+        "{marks} provisional, since answers wait for a person, {what}: {listed}",
+        marks=counted(len(waiting), "mark"),
+        what=Message("written") if provisional else Message("left out; --provisional writes them"),
+        listed=_listed(waiting),
+    )
+    return scored if provisional else [entry for entry in scored if not entry.open], FOUND
 
 
 def _check_out(out: Path, template: Path) -> None:

@@ -20,6 +20,7 @@ from coursework.gradebook.class_marking import rejecting
 from coursework.gradebook.decisions import Decisions
 from coursework.gradebook.graded_sheet import Graded
 from coursework.gradebook.placing import SheetKey, Sheets
+from coursework.gradebook.questions import drawn_questions, number_of, questions_of
 from coursework.gradebook.rows import Rejected
 from coursework.gradebook.waiting import (
     SHOWN_ON_REQUEST,
@@ -27,6 +28,7 @@ from coursework.gradebook.waiting import (
     AnswerToReview,
     Measure,
     groups,
+    margins_of,
 )
 from coursework.issuing.issued import Issued
 from coursework.issuing.students import namesakes
@@ -96,15 +98,24 @@ class ClassState:
 
     @cached_property
     def graded(self) -> dict[SheetKey, Graded]:
-        """Current sheets, with the decisions applied."""
-        return {sheet: self.decisions.apply(graded) for sheet, graded in self.machine.items()}
+        """Current sheets, with the decisions and adjustments applied."""
+        decided = {sheet: self.decisions.apply(graded) for sheet, graded in self.machine.items()}
+        if not (adjustments := self.decisions.adjustments):
+            return decided
+        margins = margins_of(self.course, self.issued)
+        return dict(zip(decided, adjustments.applied(decided.values(), self.issued, margins), strict=True))
+
+    @cached_property
+    def adjusted(self) -> Issued:
+        """Issued records with the adjusted points and scale."""
+        return self.decisions.adjustments.on(self.issued)
 
     @cached_property
     def book(self) -> Gradebook:
         """Gradebook of the class."""
         sheets = Sheets(self.sheets.sheets, list(self.sheets.rejected), list(self.sheets.warnings))
         book = Gradebook(
-            self.issued, self.sheets.rows_in, self.sheets.blanks, sheets.rejected, sheets.warnings
+            self.adjusted, self.sheets.rows_in, self.sheets.blanks, sheets.rejected, sheets.warnings
         )
         book.charged = self.charged
         both: dict[SheetKey, Graded | str] = {**self.graded, **self.faults}
@@ -144,35 +155,16 @@ class ClassState:
     @cached_property
     def questions(self) -> tuple[tuple[str, str], ...]:
         """Exercise and part of every question that was issued, in the order of the sheets."""
-        exercises = [str(e) for e in (self.issued.assignment or {}).get("exercises", ())]
-        names = dict.fromkeys((*exercises, *self.issued.exercises))
-        by_exercise: dict[str, dict[str, None]] = {name: {} for name in names}
-        for (name, _), record in self.issued.records.items():
-            by_exercise[name].update((str(p["id"]), None) for p in record["parts"])
-        return tuple(
-            (name, part) for name, parts in by_exercise.items() for part in self._in_order(name, parts)
-        )
-
-    def _in_order(self, name: str, parts: Mapping[str, None]) -> list[str]:
-        order = [p.id for p in self.course[name].spec.parts] if name in self.course else []
-        return sorted(parts, key=lambda part: order.index(part) if part in order else len(order))
+        return questions_of(self.course, self.issued)
 
     @cached_property
     def drawn(self) -> frozenset[tuple[str, str]]:
         """Questions that are answered by a drawing."""
-        return frozenset(
-            (name, part.id)
-            for name in self.issued.exercises
-            if name in self.course
-            for part in self.course[name].spec.parts
-            if part.sort.box in ("blank", "millimetre")
-        )
+        return drawn_questions(self.course, self.issued)
 
     def number(self, exercise: str, part: str) -> str:
         """Return the number of a question on the papers, such as ``2.3``."""
-        names = list(dict.fromkeys(name for name, _ in self.questions))
-        exercise_parts = [p for name, p in self.questions if name == exercise]
-        return f"{names.index(exercise) + 1}.{exercise_parts.index(part) + 1}"
+        return number_of(self.questions, exercise, part)
 
     # ------------------------------------------------------------------- waiting
 

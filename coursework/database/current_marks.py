@@ -7,12 +7,15 @@ from typing import Any, NamedTuple
 
 from sqlalchemy import Connection, Select, func, select
 
+from coursework.course.course import Course
 from coursework.database.assignments import issued_of
 from coursework.database.decisions import read_decisions
 from coursework.database.tables import mark, marking
+from coursework.gradebook.adjustments import no_margins
 from coursework.gradebook.decisions import TO_MARK
 from coursework.gradebook.graded_sheet import Graded
 from coursework.gradebook.placing import SheetKey
+from coursework.gradebook.waiting import margins_of
 from coursework.issuing.issued import Issued
 from coursework.marking.mark import Mark
 
@@ -115,8 +118,11 @@ def _graded(issued: Issued, sheet: LastMarking, lines: _SheetMarks) -> Graded:
     return graded._replace(submitted=sheet.submitted, apart=sheet.apart)
 
 
-def graded(connection: Connection, assignment_id: int, student: str | None = None) -> list[Graded]:
-    """Return the current sheets of a class, or of a student: the last marking with the decisions applied."""
+def graded(
+    connection: Connection, assignment_id: int, student: str | None = None, course: Course | None = None
+) -> list[Graded]:
+    """Return the current sheets of a class, or of a student: the last marking with the decisions and adjustments applied,
+    wider margins where the ``course`` is given."""
     sheets = last_markings(connection, assignment_id, student)
     if not sheets:
         return []
@@ -124,7 +130,9 @@ def graded(connection: Connection, assignment_id: int, student: str | None = Non
     decisions = read_decisions(connection, assignment_id, student)
     issued = issued_of(connection, assignment_id, student=student)
     results = machine_marks(issued, sheets.values(), lines)
-    return [decisions.apply(result) for _, result in results if not isinstance(result, str)]
+    sheets_now = [decisions.apply(result) for _, result in results if not isinstance(result, str)]
+    margins = no_margins if course is None else margins_of(course, issued)
+    return decisions.adjustments.applied(sheets_now, issued, margins)
 
 
 def answers_waiting(connection: Connection, assignment_id: int) -> int:

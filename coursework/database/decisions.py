@@ -99,7 +99,7 @@ def read_decisions(connection: Connection, assignment_id: int, student: str | No
     return Decisions(
         stored_decision(row)
         for row in connection.execute(query)
-        if student is None or folded(row.student) == folded(student)
+        if student is None or not row.student or folded(row.student) == folded(student)
     )
 
 

@@ -18,6 +18,7 @@ from typing import Any
 from coursework.gradebook.columns import (
     LATE,
     MARK,
+    PROVISIONAL,
     SITTING,
     SUBMITTED,
     carried_columns,
@@ -81,6 +82,7 @@ class Total:
     answers: int = 0
     verdicts: Counter[str] = field(default_factory=Counter)
     by_exercise: dict[str, float] = field(default_factory=dict)  #: points of a student's sheets
+    open: int = 0  #: answers that wait for a person
 
     def add(self, line: Mark) -> None:
         self.points += line.points
@@ -134,6 +136,7 @@ class Gradebook:
             self.asked_apart.setdefault((sitting, graded.exercise), set()).update(graded.lines)
         else:
             self.complete.add(graded.exercise)
+        student.open += graded.open
         points = student.by_exercise
         points[graded.exercise] = points.get(graded.exercise, 0.0) + graded.points
         if graded.student in self._rejected_of:
@@ -213,6 +216,7 @@ class Result:
     by_exercise: Mapping[str, float]
     verdicts: Mapping[str, int]
     late: float = 0.0  #: penalty for late submission, in points; those of the answers are unchanged
+    open: int = 0  #: answers that wait for a person; until then the mark is provisional
 
     @property
     def counts(self) -> float:
@@ -260,7 +264,7 @@ def _result(book: Gradebook, sitting: Sitting, unread_parts: Mapping[tuple[str, 
     verdicts["missing"] += len(lost) - waiting
     out_of = total.out_of + sum(part["points"] for part in lost)
     late = float(exact(total.points * book.charged.get(sitting, 0.0)))
-    return Result(sitting[1], total.points, out_of, total.by_exercise, verdicts, late)
+    return Result(sitting[1], total.points, out_of, total.by_exercise, verdicts, late, total.open + waiting)
 
 
 def _missing_parts(book: Gradebook, sitting: Sitting, key: tuple[str, int]) -> list[Mapping[str, Any]]:
@@ -315,6 +319,7 @@ def summary_rows(book: Gradebook) -> Iterator[dict[str, Any]]:
             "points": f"{points:g}",
             "out_of": f"{out_of:g}",
             LATE: f"{result.late:g}",
+            PROVISIONAL: result.open or "",
             MARK: mark_of(issued, result.counts, out_of),
             "percent": f"{100 * result.counts / out_of:.1f}" if out_of else "",
             **{verdict: result.verdicts[verdict] for verdict in VERDICTS},

@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 from coursework.errors import BadInput, nearest
 from coursework.gradebook.changes import rows_of
-from coursework.gradebook.columns import LATE, VERDICTS
+from coursework.gradebook.columns import LATE, PROVISIONAL, VERDICTS
 from coursework.gradebook.scale import exact
 from coursework.issuing.identity import Ids, identifies
 from coursework.language.numbers import typed_number
@@ -27,6 +27,7 @@ class Scored(NamedTuple):
     points: str  #: as in the file, with a decimal point
     out_of: str  #: of which they are; empty of what has its own scale
     has_answered: bool = True
+    open: str = ""  #: number of answers that wait for a person; until then the points are provisional
 
     def of(self, most: float | None) -> str:
         """Return the points scaled to another total, rounded half up to hundredths; unchanged if the total is
@@ -98,4 +99,4 @@ def _scored(path: Path, score: str) -> Iterator[Scored]:
         ids = tuple((title, value) for title, value in row.items() if value and identifies(title))
         total = {"points": out_of, "percent": "100"}.get(score, "")
         answered = any(row.get(verdict, "0") != "0" for verdict in VERDICTS if verdict != "missing")
-        yield Scored(row["student"], ids, points, total, answered)
+        yield Scored(row["student"], ids, points, total, answered, row.get(PROVISIONAL, ""))

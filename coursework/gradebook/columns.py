@@ -20,6 +20,7 @@ SITTING = "sitting"  #: a column of the marks and of the summary where somebody 
 SUBMITTED = "submitted"  #: a column of the marks where a platform tells it
 REJECTED_COLUMNS = ("student", "exercise", "seed", "part", "answer", "source", "reason")
 MARK = "mark"
+PROVISIONAL = "provisional"  #: column of the summary where answers wait: their number, of whoever has some
 LATE = "late"  #: column of the summary if late submissions have a penalty
 
 
@@ -30,13 +31,15 @@ def marks_columns(issued: Issued, *, submitted: bool = False) -> tuple[str, ...]
     return (*MARKS_COLUMNS, *(column for column, there in more if there))
 
 
-def summary_columns(issued: Issued, *, late: bool = False) -> tuple[str, ...]:
+def summary_columns(issued: Issued, *, late: bool = False, provisional: bool = False) -> tuple[str, ...]:
     """Return the columns of ``summary.csv``: the usual ones with the identity, the exercises and the mark of
     an assignment among them, then those of the roster. With ``late``, a column for the penalty of late
-    submissions; percent and mark are then those of the remaining points."""
+    submissions; percent and mark are then those of the remaining points. With ``provisional``, one for the answers that
+    wait for a person."""
     sitting = (SITTING,) if issued.has_sittings else ()
     student, points, out_of, *others = SUMMARY_COLUMNS
     others = [LATE, *others] if late else others
+    others = [PROVISIONAL, *others] if provisional else others
     if issued.assignment is None:
         return (student, points, out_of, *others, *sitting, *carried_columns(issued).values())
     mark = (MARK,) if issued.assignment.get("mark") else ()
@@ -55,7 +58,10 @@ def identity(issued: Issued) -> dict[str, str]:
 def exercise_columns(issued: Issued) -> dict[str, str]:
     """Return the column of each exercise of an assignment."""
     exercises = map(str, (issued.assignment or {}).get("exercises", ()))
-    return {e: f"{e} points" if e in (*SUMMARY_COLUMNS, MARK, LATE, SITTING) else e for e in exercises}
+    return {
+        e: f"{e} points" if e in (*SUMMARY_COLUMNS, MARK, LATE, PROVISIONAL, SITTING) else e
+        for e in exercises
+    }
 
 
 def carried_columns(issued: Issued) -> dict[str, str]:
@@ -76,7 +82,9 @@ def _is_carried(issued: Issued, title: str) -> bool:
 
 
 def _reserved_names(issued: Issued) -> frozenset[str]:
-    return frozenset(map(folded, (*SUMMARY_COLUMNS, MARK, LATE, SITTING, *exercise_columns(issued).values())))
+    return frozenset(
+        map(folded, (*SUMMARY_COLUMNS, MARK, LATE, PROVISIONAL, SITTING, *exercise_columns(issued).values()))
+    )
 
 
 def _distinct_title(title: str, reserved: frozenset[str]) -> str:

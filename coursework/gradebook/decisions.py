@@ -10,100 +10,90 @@ import difflib
 import math
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from contextlib import suppress
 from datetime import datetime
+from functools import cached_property
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
 from coursework.errors import BadInput, counted, nearest
+from coursework.gradebook.adjustments import ADJUSTMENTS, Adjustments, check_adjustment
 from coursework.gradebook.changes import lines_of
+from coursework.gradebook.decision import ACCEPTED as ACCEPTED
+from coursework.gradebook.decision import EDITED as EDITED
+from coursework.gradebook.decision import GIVEN as GIVEN
+from coursework.gradebook.decision import KEPT as KEPT
+from coursework.gradebook.decision import KINDS as KINDS
+from coursework.gradebook.decision import TO_MARK as TO_MARK
+from coursework.gradebook.decision import WITHDRAWN as WITHDRAWN
+from coursework.gradebook.decision import Decision as Decision
+from coursework.gradebook.decision import check_points as check_points
+from coursework.gradebook.decision import same_answer, same_text
 from coursework.gradebook.graded_sheet import Graded
 from coursework.gradebook.placing import UnplacedError, name_hint, sheet_of_row
 from coursework.gradebook.rows import AnswerRow
 from coursework.issuing.issued import Issued
 from coursework.issuing.students import folded
 from coursework.language.numbers import typed_number
-from coursework.language.words import words
 from coursework.marking.mark import Mark
 from coursework.messages import Message, as_message
 from coursework.system.limits import MOST_TABLE_BYTES
-
-ACCEPTED, GIVEN, KEPT, WITHDRAWN = KINDS = ("accepted", "given", "kept", "withdrawn")
-EDITED = "edited"  #: noted of a mark that was changed in ``marks.csv``; the next marking does not follow it
-TO_MARK = "to_mark"  #: the verdict of an answer that waits for a person
 
 DECISIONS_FILE = "decisions.csv"
 DECISION_COLUMNS = (
     "student", "exercise", "seed", "part", "answer", "kind", "points", "out_of", "reason",
 )  # fmt: skip
+STEP_COLUMNS = ("by", "date")  #: more columns where a line is a step, on no single student
 TO_MARK_FILE, ACCEPTED_FILE, EDITED_FILE = "to_mark.csv", "accepted.csv", "by_hand.csv"  #: of before
 _NEEDED = ("student", "exercise", "part")
 _OPTIONAL = ("seed", "points", "reason", "kind")
 _ALIKE = 0.75  #: of two column names, beyond which one is the other with a typing error
 
 
-class Decision(NamedTuple):
-    """Decision of a person on an answer."""
-
-    student: str  #: as it is written
-    exercise: str
-    seed: str  #: empty for whatever variant they have
-    part: str
-    kind: str
-    points: float | None = None  #: None for all of them
-    reason: str = ""
-    answer: str | None = None  #: what was seen: another one is not decided on; None for whatever it is
-    by: str = ""  #: person, or name of a file
-    made: datetime | None = None
-    line: int = 0  #: of the file
-    location: str = ""  #: the same, for messages
-
-    @property
-    def key(self) -> tuple[str, str, str]:
-        return folded(self.student), self.exercise, self.part
-
-    @property
-    def answer_id(self) -> tuple[str, str, str, str]:
-        return self.student, self.exercise, self.seed, self.part
-
-    @property
-    def answer_text(self) -> str:
-        return ", ".join(filter(None, self.answer_id))
-
-    @property
-    def gives(self) -> Message:
-        return (
-            Message("full points")
-            if self.points is None
-            else Message("points {points:g}", points=self.points)
-        )
-
-    def mark(self, line: Mark, lang: str) -> Mark:
-        """Return the mark of an answer with this decision.
-
-        Raises
-        ------
-        BadInput
-            The part has fewer points.
-        """
-        if self.kind == KEPT:
-            return line.saying(self.reason, self.reason)
-        points = line.out_of if self.points is None else self.points
-        check_points(points, line.part, line.out_of, self.location or self.by)
-        verdict, word = ACCEPTED, "accepted"
-        if self.kind == GIVEN:
-            verdict = ACCEPTED if points >= line.out_of else "partial" if points > 0 else "wrong"
-            word = "by_hand"
-        message = f"{words(lang)['marking'][word]} {self.reason}".strip()
-        return line._replace(verdict=verdict, points=points, says=message, feedback=message)
-
-
 class Decisions:
-    """Decisions in their order, and what they make of marked sheets."""
+    """Decisions in their order, and what they make of marked sheets: those on an answer of a student, those on an answer
+    whoever gave it, and adjustments of questions and of the scale."""
 
     def __init__(self, decisions: Iterable[Decision] = ()):
         self._of: dict[tuple[str, str, str], list[Decision]] = {}
+        self.steps: list[Decision] = []  #: on no single student, in their order, those taken back included
         for decision in decisions:
-            self._of.setdefault(decision.key, []).append(decision)
+            if decision.student:
+                self._of.setdefault(decision.key, []).append(decision)
+            else:
+                self.steps.append(decision)
+
+    @cached_property
+    def standing_steps(self) -> tuple[Decision, ...]:
+        """Steps that are not taken back: a withdrawal takes back the last one on the same place."""
+        standing: list[Decision] = []
+        for step in self.steps:
+            if step.kind != WITHDRAWN:
+                standing.append(step)
+                continue
+            last = next((k for k in reversed(range(len(standing))) if standing[k].place == step.place), None)
+            if last is not None:
+                del standing[last]
+        return tuple(standing)
+
+    @cached_property
+    def adjustments(self) -> Adjustments:
+        """Adjustments of questions and of the scale."""
+        return Adjustments(step for step in self.standing_steps if step.kind in ADJUSTMENTS)
+
+    @cached_property
+    def _of_all(self) -> dict[tuple[str, str], list[Decision]]:
+        """Decisions on an answer whoever gave it, by exercise and part."""
+        of_all: dict[tuple[str, str], list[Decision]] = {}
+        for step in self.standing_steps:
+            if step.kind not in ADJUSTMENTS:
+                of_all.setdefault((step.exercise, step.part), []).append(step)
+        return of_all
+
+    def with_steps(self, steps: Iterable[Decision]) -> Decisions:
+        """Return these decisions with some more steps."""
+        own = (one for decisions in self._of.values() for one in decisions)
+        return Decisions((*own, *self.steps, *steps))
 
     def on(self, student: str, exercise: str, part: str) -> Sequence[Decision]:
         """Return all decisions on a student's answer, of any variant."""
@@ -124,6 +114,11 @@ class Decisions:
                 return
             if decision.answer is None or same_answer(decision.answer, line.answer):
                 yield decision
+        for step in reversed(self._of_all.get((exercise, line.part), ()) if self.steps else ()):
+            if step.seed in ("", str(seed)) and any(
+                same_text(step.answer or "", text) for text in (line.answer, line.read_as)
+            ):
+                yield step
 
     def apply(self, graded: Graded) -> Graded:
         """Return the sheet with the decisions of people applied to its marks.
@@ -133,32 +128,16 @@ class Decisions:
         BadInput
             An answer is given more points than its part has.
         """
-        if not self._of:
+        if not self._of and not self.steps:
             return graded
-        lines, unanswered = dict(graded.lines), list(graded.unanswered)
+        lines, unanswered, settled = dict(graded.lines), list(graded.unanswered), []
         for part, line in graded.lines.items():
             if (decision := self.standing(graded, line)) is not None:
+                settled.append(part)
                 lines[part] = decision.mark(line, str(graded.record.get("lang", "fr")))
                 if part not in (*graded.answered, *unanswered):
                     unanswered.append(part)
-        return graded._replace(lines=lines, unanswered=tuple(unanswered))
-
-
-def same_answer(text: str, other: str) -> bool:
-    """Return True if two texts are the same answer, apart from spaces."""
-    return " ".join(text.split()) == " ".join(other.split())
-
-
-def check_points(points: float, part: str, out_of: float, location: str) -> None:
-    """Refuse more points than a part has."""
-    if points > out_of:
-        raise BadInput(
-            "{place}: {points:g} points for {part}, which has {out_of:g}; give at most these",
-            place=location,
-            points=points,
-            part=part,
-            out_of=out_of,
-        )
+        return graded._replace(lines=lines, unanswered=tuple(unanswered), settled=tuple(settled))
 
 
 # ------------------------------------------------------------------------ files
@@ -247,7 +226,7 @@ class DecisionFiles:
     @property
     def _unused(self) -> list[Decision]:
         """Given points of answers that nobody gave."""
-        return [one for one in self._own if one.kind == GIVEN and one not in self._used]
+        return [one for one in self._own if one.student and one.kind == GIVEN and one not in self._used]
 
     @property
     def lost(self) -> list[str]:
@@ -272,11 +251,20 @@ class DecisionFiles:
     def others(self, among: Iterable[Decision] = ()) -> list[dict[str, Any]]:
         """Return the lines of the decisions of ``decisions.csv`` as they were, except for those ``among``."""
         left = set(among)
-        return [
-            _row(*one.answer_id, one.answer or "", one.kind, one.points, one.reason)
-            for one in self._own
-            if one.kind != EDITED and one not in left
-        ]
+        return [row_of(one) for one in self._own if one.kind != EDITED and one not in left]
+
+    @property
+    def columns(self) -> tuple[str, ...]:
+        """Columns of the new ``decisions.csv``."""
+        has_steps = any(not one.student for one in self._own)
+        return (*DECISION_COLUMNS, *STEP_COLUMNS) if has_steps else DECISION_COLUMNS
+
+    def add(self, decisions: Iterable[Decision]) -> None:
+        """Add decisions as last lines of ``decisions.csv``; they count at once."""
+        self._own += decisions
+        if self.path is not None:
+            self.files[self.path] = self._own
+        self.decisions = Decisions(self.lines)
 
     @property
     def replaced(self) -> Path | None:
@@ -291,7 +279,8 @@ class DecisionFiles:
         faults: list[str] = list(self.headings)
         notes: list[str] = []
         by_file = [
-            [one for one in decisions if one.kind not in (GIVEN, EDITED)] for decisions in self.files.values()
+            [one for one in decisions if one.student and one.kind not in (GIVEN, EDITED)]
+            for decisions in self.files.values()
         ]
         if not any(by_file):
             return faults, notes
@@ -327,6 +316,12 @@ def edited_row(change: Mapping[str, Any]) -> dict[str, Any]:
     )
 
 
+def row_of(one: Decision) -> dict[str, Any]:
+    """Return the line of ``decisions.csv`` of a decision; of a step with who made it, and the day."""
+    row = _row(*one.answer_id, one.answer or "", one.kind, one.points, one.reason)
+    return row | {"by": one.by, "date": one.made and one.made.date().isoformat()} if not one.student else row
+
+
 def _row(
     student: str,
     exercise: str,
@@ -337,7 +332,7 @@ def _row(
     points: float | None,
     reason: str,
 ) -> dict[str, Any]:
-    shown = "" if points is None else f"{points:g}"
+    shown = "" if points is None else f"{points:.10g}"
     values = student, exercise, seed, part, answer, kind, shown, "", reason
     return dict(zip(DECISION_COLUMNS, values, strict=True))
 
@@ -351,11 +346,15 @@ def _decision(
     """
     points = points_of(row.get("points", ""), location)
     kind = row.get("kind", "") or (GIVEN if listed else ACCEPTED)
-    if kind not in (*KINDS, EDITED):
+    if kind not in (*KINDS, *ADJUSTMENTS, EDITED):
         problem = Message(
-            "no kind of decision {kind!r}{nearest}", kind=kind[:40], nearest=nearest(kind, KINDS)
+            "no kind of decision {kind!r}{nearest}",
+            kind=kind[:40],
+            nearest=nearest(kind, (*KINDS, *ADJUSTMENTS)),
         )
         raise BadInput("{file}: {problem}", file=location, problem=problem)
+    if kind in ADJUSTMENTS or (not row.get("student") and (row.get("answer") or kind == WITHDRAWN)):
+        return _step(location, number, row, kind, points, by)
     if kind == GIVEN and points is None:
         if listed:
             return None
@@ -378,6 +377,46 @@ def _decision(
     answer = row.get("answer", "") if listed else row.get("answer") or None if "kind" in row else None
     named = row["student"], row["exercise"], seed, row["part"]
     return Decision(*named, kind, points, row.get("reason", ""), answer, by, None, number, location)
+
+
+def _step(
+    location: str, number: int, row: Mapping[str, str], kind: str, points: float | None, by: str
+) -> Decision:
+    """Return the step of a line, on no single student."""
+    if row.get("student"):
+        raise BadInput(
+            "{place}: {kind} is for everybody: leave the column student empty", place=location, kind=kind
+        )
+    made = None
+    with suppress(ValueError):
+        made = datetime.fromisoformat(row.get("date", ""))
+    seed = re.sub(r"[.,]0+$", "", row.get("seed", ""))
+    named = "", row.get("exercise", ""), seed, row.get("part", "")
+    answer, by = row.get("answer") or None, row.get("by") or by
+    return Decision(*named, kind, points, row.get("reason", ""), answer, by, made, number, location)
+
+
+def check_steps(steps: Iterable[Decision], issued: Issued) -> None:
+    """Refuse a step on a question that was not issued, or with a value that makes no sense.
+
+    Raises
+    ------
+    BadInput
+        There is one; the message names its line.
+    """
+    worth: dict[str, dict[str, float]] = {}
+    for (exercise, _), record in issued.records.items():
+        worth.setdefault(exercise, {}).update((str(p["id"]), float(p["points"])) for p in record["parts"])
+    for step in steps:
+        if step.kind in ADJUSTMENTS:
+            check_adjustment(step, worth)
+        elif step.part not in worth.get(step.exercise, {}):
+            raise BadInput(
+                "{exercise} has no part {part!r}{nearest}",
+                exercise=step.exercise,
+                part=step.part,
+                nearest=nearest(step.part, worth.get(step.exercise, ())),
+            )
 
 
 def _misspelt(columns: Iterable[str]) -> Iterator[str]:

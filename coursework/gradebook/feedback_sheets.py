@@ -172,6 +172,7 @@ def feedback_paper(
         localise(mark_of(issued, points, out_of), lang),
         stated.get("answers") != "never",
         tuple(_advice(sheets, set(by_exercise), lang)),
+        open=sum(graded_sheet.open for graded_sheet in graded) + len(waiting),
     )
 
 
@@ -187,7 +188,10 @@ def feedback_collection(
     )
     heading = PaperHeading(lang=lang, title=course.folder.title(lang), course="", student=student)
     points, out_of = sum(s.points for s in sheets), sum(s.out_of for s in sheets)
-    return FeedbackPaper(heading, sheets, points, out_of, answers=telling.solutions, numbered=False)
+    waits = sum(sheet.open for sheet in graded)
+    return FeedbackPaper(
+        heading, sheets, points, out_of, answers=telling.solutions, numbered=False, open=waits
+    )
 
 
 def _blank(

@@ -7,6 +7,8 @@ from typing import Any, NamedTuple
 
 from coursework.marking.mark import Mark
 
+WAITING = ("to_mark", "unreadable")  #: verdicts of answers that wait for a person
+
 
 class Graded(NamedTuple):
     """Marked sheet of a student: a mark for each part; ``answered`` names the parts with an answer."""
@@ -21,10 +23,16 @@ class Graded(NamedTuple):
     sitting: int = 1
     submitted: str = ""  #: when, where a platform tells it
     apart: bool = False  #: a platform asked these parts alone of this variant
+    settled: tuple[str, ...] = ()  #: parts on whose answer a person has decided
 
     @property
     def points(self) -> float:
         return sum(line.points for line in self.lines.values())
+
+    @property
+    def open(self) -> int:
+        """Number of answers that wait for a person."""
+        return sum(line.verdict in WAITING and part not in self.settled for part, line in self.lines.items())
 
     @property
     def out_of(self) -> float:

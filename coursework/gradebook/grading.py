@@ -17,15 +17,15 @@ from coursework.gradebook import book as gradebook
 from coursework.gradebook.book import Gradebook, Sitting
 from coursework.gradebook.changes import CHANGES_COLUMNS, EarlierMarks, History
 from coursework.gradebook.class_marking import marked
-from coursework.gradebook.columns import REJECTED_COLUMNS, marks_columns, summary_columns
+from coursework.gradebook.columns import PROVISIONAL, REJECTED_COLUMNS, marks_columns, summary_columns
 from coursework.gradebook.decisions import (
-    DECISION_COLUMNS,
     DECISIONS_FILE,
     EDITED_FILE,
     TO_MARK,
     TO_MARK_FILE,
     DecisionFiles,
     Decisions,
+    check_steps,
     edited_row,
 )
 from coursework.gradebook.edited_marks import EditedMarks, differs
@@ -37,6 +37,7 @@ from coursework.gradebook.platform_files import platform_file_lines
 from coursework.gradebook.rows import AnswerRow, PlatformFile, Rejected
 from coursework.gradebook.sheets_on_disk import placed_on_disk
 from coursework.gradebook.submissions import find, read_file
+from coursework.gradebook.waiting import margins_of
 from coursework.issuing.issued import Issued
 from coursework.messages import Message
 from coursework.system.build_folder import free_name, is_as_written, write_down
@@ -130,17 +131,19 @@ def write_marks(
     ``decisions`` that count; ``charged`` contains the penalties of late submissions as shares of the points."""
     before = EarlierMarks(out / "marks.csv")
     history = History(out, _day(form))
-    book = Gradebook(issued, sheets.rows_in, sheets.blanks, sheets.rejected, sheets.warnings)
+    check_steps(decisions.standing_steps, issued)
+    adjustments = decisions.adjustments
+    book = Gradebook(adjustments.on(issued), sheets.rows_in, sheets.blanks, sheets.rejected, sheets.warnings)
     book.seen, book.charged = platform_file_lines(sheets.seen), charged or {}
     sheets_shown: list[Graded] = []
     with Tables(out, spreadsheet) as tables:
         marks = tables.open("marks.csv", marks_columns(issued, submitted=sheets.is_dated))
-        summary = tables.open("summary.csv", summary_columns(issued, late=bool(charged)))
         rejected = tables.open("rejected.csv", REJECTED_COLUMNS)
         changes = tables.open("changes.csv", CHANGES_COLUMNS) if before.exists else None
-        for done, graded in enumerate(results, start=1):
-            files.follow(graded, decisions)
-            graded = decisions.apply(graded)
+        standing = _standing(results, files, decisions)
+        if adjustments:  # these need all sheets of a student
+            standing = iter(adjustments.applied(standing, issued, margins_of(course, issued)))
+        for done, graded in enumerate(standing, start=1):
             book.add(graded)
             for row in gradebook.marks_rows(graded):
                 marks.write(row)
@@ -157,7 +160,7 @@ def write_marks(
         book.warnings += notes
         book.waiting = files.waiting
         _write_decisions(files, tables, book)
-        _write_counts(book, summary, rejected, changes, history)
+        _write_counts(book, tables, rejected, changes, history)
         stood = files.is_edited or (out / EDITED_FILE).exists()
         edited = not is_as_written(out / _WRITTEN, marks.path) and before.edited(out / "summary.csv")
         if book.changes and (stood or edited):
@@ -172,14 +175,25 @@ def write_marks(
     return book
 
 
+def _standing(results: Iterable[Graded], files: DecisionFiles, decisions: Decisions) -> Iterator[Graded]:
+    """Yield the sheets with the decisions on answers; note which lines of the files are about them."""
+    for graded in results:
+        files.follow(graded, decisions)
+        yield decisions.apply(graded)
+
+
 def _day(form: FeedbackForm) -> str:
     return (form.today or datetime.date.today()).isoformat()
 
 
 def _write_counts(
-    book: Gradebook, summary: TableFile, rejected: TableFile, changes: TableFile | None, history: History
+    book: Gradebook, tables: Tables, rejected: TableFile, changes: TableFile | None, history: History
 ) -> None:
     rows = list(gradebook.summary_rows(book))
+    columns = summary_columns(
+        book.issued, late=bool(book.charged), provisional=any(row[PROVISIONAL] for row in rows)
+    )
+    summary = tables.open("summary.csv", columns)
     for row in rows:
         summary.write(row)
     if changes is not None:
@@ -221,19 +235,21 @@ def grade_edited_marks(
     earlier = len(sheets.rejected)
     machine = list(marked(course, issued, sheets))
     standing.refuse(sheets.rejected[earlier:])
-    book = Gradebook(issued, sheets.rows_in, 0, sheets.rejected, sheets.warnings)
+    check_steps(decisions.standing_steps, issued)
+    adjustments = decisions.adjustments
+    book = Gradebook(adjustments.on(issued), sheets.rows_in, 0, sheets.rejected, sheets.warnings)
     sheets_shown = []
     history = History(out, _day(form))
     with Tables(out, spreadsheet) as tables:
-        summary = tables.open("summary.csv", summary_columns(issued))
         rejected = tables.open("rejected.csv", REJECTED_COLUMNS)
         changes = tables.open("changes.csv", CHANGES_COLUMNS)
         edited = []
-        for graded in machine:
-            sheets_shown.append(standing.of(graded))
+        decided = adjustments.applied(map(decisions.apply, machine), issued, margins_of(course, issued))
+        for graded, marked_now in zip(machine, decided, strict=True):
+            sheets_shown.append(standing.of(marked_now))
             book.add(sheets_shown[-1])
             files.follow(graded, files.decisions)
-            for change in differs(decisions.apply(graded), sheets_shown[-1]):
+            for change in differs(marked_now, sheets_shown[-1]):
                 history.add(change)
                 edited.append(edited_row(change))
         book.changes = len(edited)
@@ -241,7 +257,7 @@ def grade_edited_marks(
             line.verdict == TO_MARK for graded_sheet in sheets_shown for line in graded_sheet.lines.values()
         )
         _write_decisions(files, tables, book, edited)
-        _write_counts(book, summary, rejected, changes, history)
+        _write_counts(book, tables, rejected, changes, history)
         if feedback:
             renew_feedback(course, book, sheets_shown, out, progress, form, tables.check)
         tables.commit()
@@ -265,7 +281,7 @@ def _write_decisions(
             Message("the earlier {file} is now {copy}", file=replaced.name, copy=copy),
         ]
     if files.path is not None and (rows or replaced is not None):
-        table = tables.open(files.path.name, DECISION_COLUMNS)
+        table = tables.open(files.path.name, files.columns)
         for row in rows:
             table.write(row)
 

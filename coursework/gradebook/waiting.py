@@ -14,6 +14,7 @@ from typing import NamedTuple
 
 from coursework.course.course import Course
 from coursework.course.key_batch import keys_of
+from coursework.gradebook.adjustments import Margins
 from coursework.gradebook.class_marking import rules_of
 from coursework.gradebook.graded_sheet import Graded
 from coursework.issuing.issued import Issued
@@ -86,6 +87,25 @@ def measures(course: Course, issued: Issued, graded: Sequence[Graded]) -> Iterat
             if lines[part.id].verdict != "correct"
         }
         yield Measure(known_margins, references)
+
+
+def margins_of(course: Course, issued: Issued) -> Margins:
+    """Return the function that measures the answers of sheets for a wider margin."""
+
+    def margins(sheets: Sequence[Graded]) -> Iterator[Mapping[str, float]]:
+        rules = rules_of(course, issued)
+        variants = [course[graded.exercise].from_record(graded.record) for graded in sheets]
+        for name in dict.fromkeys(graded.exercise for graded in sheets):
+            keys_of(course[name], [v for v in variants if v.exercise.name == name], rules)
+        for graded, variant in zip(sheets, variants, strict=True):
+            distances = {
+                part.id: half_widths_off(variant, part, graded.lines[part.id].answer)
+                for part in variant.parts
+                if part.id in graded.lines and graded.lines[part.id].points < graded.lines[part.id].out_of
+            }
+            yield {part: distance for part, distance in distances.items() if distance is not None}
+
+    return margins
 
 
 def groups(

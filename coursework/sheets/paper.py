@@ -74,3 +74,4 @@ class FeedbackPaper:
     answers: bool = True  #: whether the right answers are shown
     advice: tuple[str, ...] = ()  #: what to look at next, Markdown
     numbered: bool = True  #: questions are 1.1, 1.2 as on a paper; else as on the sheet of each exercise
+    open: int = 0  #: answers that wait for a person; until then the mark is provisional

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import re
 from collections import Counter, defaultdict
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -56,10 +56,15 @@ def alike(folder: Path) -> list[AlikeSheet]:
         A line of ``marks.csv`` that lacks cells.
     """
     wanted = ("student", "exercise", "seed", "part", "read_as", "verdict")
+    return alike_lines(columns_of(folder / "marks.csv", wanted))
+
+
+def alike_lines(lines: Iterable[tuple[str, ...]]) -> list[AlikeSheet]:
+    """Return the same of lines of marks: student, exercise, seed, part, reading and verdict."""
     right: dict[tuple[str, str], dict[str, float]] = defaultdict(dict)
     owners: dict[tuple[str, str], dict[str, None]] = defaultdict(dict)
     wrong: dict[tuple[str, str, str], list[tuple[str, float]]] = defaultdict(list)
-    for student, exercise, seed, part, read_as, verdict in columns_of(folder / "marks.csv", wanted):
+    for student, exercise, seed, part, read_as, verdict in lines:
         owners[exercise, seed][student] = None
         if (value := _measured(read_as)) is None:
             continue

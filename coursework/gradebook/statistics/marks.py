@@ -74,7 +74,7 @@ class _Decimals(dict):
 def read(folder: Path) -> Marks:
     """Read a folder of marks: ``marks.csv``, and ``summary.csv`` and ``rejected.csv`` if they are there.
 
-    Points come from ``marks.csv`` alone, so that a mark mended by hand there counts. Of a student with several
+    Points come from ``marks.csv`` alone, so that a mark mended by hand there counts. Questions that do not count, out of 0, are left out. Of a student with several
     sittings the one counts that the summary names.
 
     Raises
@@ -88,9 +88,9 @@ def read(folder: Path) -> Marks:
     if not path.is_file():
         raise _no_marks(folder)
     decimals = _Decimals()
-    lines = _Columns(_counting(folder, decimals))
+    lines = _Columns(line for line in _counting(folder, decimals) if line[5] != 0)
     _check_verdicts(path, lines.verdicts)
-    if lines.out_of and min(lines.out_of) <= 0:
+    if lines.out_of and min(lines.out_of) < 0:
         raise BadInput(
             "{path}: a line is out of {out_of:g} points; every part must have some",
             path=path,
@@ -113,8 +113,8 @@ class StudentSummary(NamedTuple):
 
 
 def marks_of(lines: Iterable[Line], entries: Mapping[str, StudentSummary], rejected: int = 0) -> Marks:
-    """Return the columns of a class's marks, with the summary of each student."""
-    return _Columns(lines).marks(entries, rejected)
+    """Return the columns of a class's marks, with the summary of each student; without lines that are out of nothing."""
+    return _Columns(line for line in lines if line[5] > 0).marks(entries, rejected)
 
 
 class _Columns:
@@ -170,8 +170,18 @@ def unlike_summary(folder: Path, marks: Marks) -> list[str]:
         return []
     sums = np.bincount(marks.student, marks.points, minlength=len(marks.students))
     results = dict(zip(marks.students, sums.tolist(), strict=True))
-    text = _lines(path, ("student", "points", "out_of"), _Decimals())
-    return [name for name, points, _ in text if abs(results[name] - points) > 1e-5 * max(1.0, points)]
+    text = list(_lines(path, ("student", "points", "out_of"), _Decimals()))
+    unlike = {name for name, points, _ in text if abs(results[name] - points) > 1e-5 * max(1.0, points)}
+    if unlike:  # points of a bonus are no points of a question
+        results = dict.fromkeys(unlike, 0.0)
+        for name, _, _, _, points, _ in _counting(folder, _Decimals()):
+            if name in unlike:
+                results[name] += points
+    return [
+        name
+        for name, points, _ in text
+        if name in unlike and abs(results[name] - points) > 1e-5 * max(1.0, points)
+    ]
 
 
 def _counting(folder: Path, decimals: _Decimals) -> Iterator[tuple[Any, ...]]:

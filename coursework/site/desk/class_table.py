@@ -60,6 +60,7 @@ class ClassRow:
     tries: int
     late: int  #: seconds
     handed_in: bool
+    open: int  #: answers that wait for a person; until then the mark is provisional
 
     @property
     def waits(self) -> int:
@@ -111,16 +112,17 @@ def _row(
     )
     return ClassRow(
         number, student, identity, tuple(cells.get(question, BLANK) for question in now.questions),
-        result.points, result.out_of, mark_of(now.issued, result.counts, result.out_of),
-        tries, submitted.late if submitted else 0, bool(cells) or submitted is not None,
+        result.points, result.out_of, mark_of(now.adjusted, result.counts, result.out_of),
+        tries, submitted.late if submitted else 0, bool(cells) or submitted is not None, result.open,
     )  # fmt: skip
 
 
 def _means(now: ClassState, table_rows: Sequence[ClassRow]) -> list[str]:
     """Return the mean of each question over the students who submitted, in percent of its points."""
     most: dict[tuple[str, str], float] = {}
+    adjustments = now.decisions.adjustments
     for (name, _), record in now.issued.records.items():
-        most.update({(name, str(p["id"])): float(p["points"]) for p in record["parts"]})
+        most.update({(name, str(p["id"])): adjustments.worth(name, p) for p in record["parts"]})
     means = []
     for column, question in enumerate(now.questions):
         had = [row.cells[column].points for row in table_rows if row.cells[column].sign]
@@ -214,7 +216,7 @@ def _content(now: ClassState) -> str:
     table_rows, lines = rows(now), []
     for row in table_rows:
         own = [cells.setdefault(cell, len(cells)) for cell in row.cells]
-        rest = row.points, row.out_of, row.mark, row.tries, row.late, row.handed_in
+        rest = row.points, row.out_of, row.mark, row.tries, row.late, row.handed_in, row.open
         lines.append([row.student, row.identity, own, *rest])
     questions = [[exercise, part, now.number(exercise, part)] for exercise, part in now.questions]
     content = {"questions": questions, "means": _means(now, table_rows), "cells": list(cells), "rows": lines}

@@ -20,7 +20,7 @@ from coursework.database.submissions import insert_submission, rows_of, submissi
 from coursework.errors import BadInput, CourseworkError
 from coursework.gradebook.book import marks_rows, rejected_rows, summary_rows
 from coursework.gradebook.class_points import SCORES, class_points
-from coursework.gradebook.columns import REJECTED_COLUMNS, marks_columns, summary_columns
+from coursework.gradebook.columns import PROVISIONAL, REJECTED_COLUMNS, marks_columns, summary_columns
 from coursework.gradebook.feedback_sheets import write_feedback
 from coursework.gradebook.filling import Filled
 from coursework.gradebook.placing import as_texts
@@ -180,9 +180,14 @@ def _marks(request: Request, now: ClassState) -> bytes:
 
 
 def _summary(request: Request, now: ClassState) -> bytes:
-    return csv_file(
-        summary_rows(now.book), summary_columns(now.issued, late=bool(now.charged)), _spreadsheet(request)
-    )
+    return _summary_table(now, _spreadsheet(request))
+
+
+def _summary_table(now: ClassState, spreadsheet: Spreadsheet = SPREADSHEETS["point"]) -> bytes:
+    rows = list(summary_rows(now.book))
+    provisional = any(row[PROVISIONAL] for row in rows)
+    columns = summary_columns(now.adjusted, late=bool(now.charged), provisional=provisional)
+    return csv_file(rows, columns, spreadsheet)
 
 
 def _rejected(request: Request, now: ClassState) -> bytes:
@@ -311,14 +316,15 @@ def gradebook(request: Request) -> Response:
     platform = platform_gradebook(form.text("platform"))
     with TemporaryDirectory(prefix="coursework-") as temporary:
         folder = Path(temporary)
-        (folder / "summary.csv").write_bytes(
-            csv_file(summary_rows(now.book), summary_columns(now.issued, late=bool(now.charged)))
-        )
+        (folder / "summary.csv").write_bytes(_summary_table(now))
         path = folder / "sent" / file_name(sent)
         path.parent.mkdir()
         path.write_bytes(sent.data)
         try:
             scored = class_points(folder / "summary.csv", score if score in SCORES else "points")
+            waiting = [entry.name for entry in scored if entry.open]
+            if not form.text("provisional"):
+                scored = [entry for entry in scored if not entry.open]
             most = form.text("most").strip().replace(",", ".")
             filled = read_apart(
                 DESK_FILES, request.words["refused"]["too_much"], uploads.filled_in, platform.name, path, form.text("item").strip(), scored,
@@ -334,6 +340,7 @@ def gradebook(request: Request) -> Response:
     outcomes = {
         "strangers": filled.strangers, "unclear": filled.unclear, "absent": filled.absent, "kept": filled.unchanged,
     }  # fmt: skip
+    outcomes["provisional" if form.text("provisional") else "left_out"] = tuple(waiting)
     messages += [texts[key].format(len(names), _list(names)) for key, names in outcomes.items() if names]
     return files_page(request, messages, filled, file_name(sent))
 

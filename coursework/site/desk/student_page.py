@@ -109,7 +109,7 @@ def student_page(request: Request) -> Response:
     sheets.sort(key=lambda entry: (-entry.graded.sitting, now.issued.exercises.index(entry.graded.exercise)))
     return class_page_of(
         request, now, "site/instructor/student", "class", student=student, result=result, told=message,
-        mark=localise(mark_of(now.issued, result.counts, result.out_of), request.lang), columns=_columns(now, student),
+        mark=localise(mark_of(now.adjusted, result.counts, result.out_of), request.lang), columns=_columns(now, student),
         tries=[(moment(entry.received_at, request.lang), entry) for entry in tries], known=person or 0,
         sittings=[(n, list(group)) for n, group in groupby(sheets, key=lambda entry: entry.graded.sitting)],
         practised=[_practised(request, name, *alone[name]) for name in now.issued.exercises if name in alone],

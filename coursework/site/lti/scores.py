@@ -16,6 +16,7 @@ from typing import Any, NamedTuple
 
 from sqlalchemy import Connection
 
+from coursework.course.course import Course
 from coursework.database.assignments import issued_of
 from coursework.database.class_state import ClassState
 from coursework.database.current_marks import last_markings, lines_of, machine_marks
@@ -26,8 +27,8 @@ from coursework.database.settings import put_value, value_of
 from coursework.database.submissions import submissions_of
 from coursework.errors import CourseworkError
 from coursework.gradebook.book import Gradebook, Result, results
-from coursework.gradebook.decisions import Decisions
 from coursework.gradebook.graded_sheet import Graded
+from coursework.gradebook.waiting import margins_of
 from coursework.issuing.issued import Issued
 from coursework.language.words import words
 from coursework.platforms.lti.launch import Launch
@@ -40,7 +41,6 @@ from coursework.site.papers.assignment_state import AssignmentState
 from coursework.site.papers.submission import pass_dates
 
 LOG = logging.getLogger("coursework.site")
-WAITS = ("to_mark", "unreadable")  #: verdicts of answers that wait for a person
 _COMMENT = 900  #: characters of a comment in the gradebook
 _PAUSE = 5.0  #: seconds between two checks
 
@@ -64,34 +64,28 @@ class Marked(NamedTuple):
 def marked_in(now: ClassState, student: str) -> Marked | None:
     """Return the marks of a student from the state of the class; None before the first submission."""
     sheets = [graded for graded in now.graded.values() if graded.student == student]
-    return _marked(now.issued, now.results.get(student), sheets, now.decisions)
+    return _marked(now.issued, now.results.get(student), sheets)
 
 
-def marked_of(connection: Connection, number: int, student: str) -> Marked | None:
+def marked_of(course: Course[Any], connection: Connection, number: int, student: str) -> Marked | None:
     """Return the marks of one student alone, at a cost that does not depend on the size of the class."""
     markings = last_markings(connection, number, student).values()
     issued = issued_of(connection, number, student=student)
     decisions = read_decisions(connection, number, student)
     marked = machine_marks(issued, markings, lines_of(connection, markings))
     sheets = [decisions.apply(graded) for _, graded in marked if not isinstance(graded, str)]
-    book = Gradebook(issued)
+    sheets = decisions.adjustments.applied(sheets, issued, margins_of(course, issued))
+    book = Gradebook(decisions.adjustments.on(issued))
     for graded in sheets:
         book.add(graded)
-    return _marked(issued, dict(results(book)).get(student), sheets, decisions)
+    return _marked(issued, dict(results(book)).get(student), sheets)
 
 
-def _marked(
-    issued: Issued, result: Result | None, sheets: Sequence[Graded], decisions: Decisions
-) -> Marked | None:
+def _marked(issued: Issued, result: Result | None, sheets: Sequence[Graded]) -> Marked | None:
     counted = [graded for graded in sheets if result and graded.sitting == result.sitting]
     if result is None or not counted:
         return None
-    waits = any(
-        line.verdict in WAITS and decisions.standing(graded, line) is None
-        for graded in counted
-        for line in graded.lines.values()
-    )
-    return Marked(issued, result, counted, waits)
+    return Marked(issued, result, counted, any(graded.open for graded in counted))
 
 
 def score_of(
@@ -104,7 +98,7 @@ def score_of(
         if state is None or not state.done or not state.releases("feedback"):
             return None
         student = state.assignment.student
-        marked = marked_in(now, student) if now else marked_of(connection, number, student)
+        marked = marked_in(now, student) if now else marked_of(site.course, connection, number, student)
     if marked is None:
         return None
     comment = _comment(marked, marked.given(state), lang)

@@ -7,6 +7,7 @@ from typing import Any
 
 from coursework.database.assignments import issued_content
 from coursework.database.current_marks import graded
+from coursework.database.decisions import read_decisions
 from coursework.database.marking import mark_submission
 from coursework.database.submissions import Submission, drawings_of
 from coursework.figures import Figure
@@ -32,11 +33,12 @@ def feedback_of(
     with request.site.store.reading() as connection:
         sheets = [
             sheet
-            for sheet in graded(connection, state.assignment.id, paper.student)
+            for sheet in graded(connection, state.assignment.id, paper.student, request.site.course)
             if sheet.sitting == chosen.number
         ]
         content = issued_content(connection, state.assignment.id, request.user.id)
-    issued = Issued(_allowed(content, state), state.assignment.name)
+        adjustments = read_decisions(connection, state.assignment.id, paper.student).adjustments
+    issued = adjustments.on(Issued(_allowed(content, state), state.assignment.name))
     telling = FeedbackOptions(solutions=_shows_solutions(issued, state))
     document = feedback_paper(
         request.site.course, issued, paper.student, sheets, request.lang, telling=telling

@@ -1,0 +1,443 @@
+"""The evening after an exam: what is left before marks may go out, and what a change makes of them.
+
+One class, whether the marks are those of a folder or of a database: :class:`Exam`.
+"""
+
+from __future__ import annotations
+
+import re
+from collections import Counter
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+from datetime import UTC, datetime
+from functools import cached_property
+from typing import Any, NamedTuple
+
+from coursework.course.course import Course
+from coursework.gradebook.adjustments import FULL, NEUTRAL, SPARED, STEP, WEIGHT, Adjustments, Question
+from coursework.gradebook.book import Gradebook, Result, Sitting, results
+from coursework.gradebook.decisions import ACCEPTED, GIVEN, WITHDRAWN, Decision, Decisions, check_steps
+from coursework.gradebook.graded_sheet import WAITING, Graded
+from coursework.gradebook.questions import drawn_questions, number_of, questions_of
+from coursework.gradebook.rows import Rejected
+from coursework.gradebook.scale import USUAL_SCALE, mark_on
+from coursework.gradebook.statistics.alike import alike_lines
+from coursework.gradebook.statistics.measures import ENOUGH, WEAK, PartStatistics, measure
+from coursework.gradebook.statistics.of_class import marks_of_class
+from coursework.gradebook.waiting import (
+    SHOWN_ON_REQUEST,
+    AnswerGroup,
+    AnswerToReview,
+    Measure,
+    groups,
+    margins_of,
+    measures,
+    written,
+)
+from coursework.issuing.assignment import Assignment
+from coursework.issuing.issued import Issued
+from coursework.issuing.students import folded
+from coursework.issuing.variant_assignment import with_points
+from coursework.language.words import languages, words
+from coursework.marking.mark import Mark
+from coursework.messages import Message
+
+_SLASH = re.compile(r"[^/]*[0-9][^/]*/[^/]*[0-9][^/]*")
+_SHARED = 0.5  #: of the answers to a question, from which one wrong answer may be right after all
+_NOBODY = 0.02  #: mean share of the points up to which nobody got a question
+BINS = 10  #: of the distribution of marks
+
+#: Patterns that are named for a person, in the order in which they are shown.
+PATTERNS = ("exchanged", "radians", "slash", "alike")
+
+
+class SuspiciousPattern(NamedTuple):
+    """Suspicious pattern, and the sheets that show it."""
+
+    kind: str
+    sheets: tuple[tuple[str, str], ...]  #: student, and the question or what it is like
+
+
+@dataclass(frozen=True)
+class ExamQuestion:
+    """Question as the class answered it, what it counts, and what is proposed."""
+
+    exercise: str
+    part: str
+    number: str
+    issued: float  #: points as issued
+    weight: float  #: points now
+    status: str  #: how it counts; empty as usual
+    tolerance: float  #: accepted half-widths
+    statistics: PartStatistics | None  #: without what was adjusted
+    why: str = ""  #: reason for a look: reversed, nobody, shared, weak
+    proposal: Decision | None = None
+
+    @property
+    def question(self) -> Question:
+        return self.exercise, self.part
+
+
+class MarkChange(NamedTuple):
+    """Mark of a student before and after a change."""
+
+    student: str
+    before: float
+    now: float
+
+
+@dataclass(frozen=True)
+class Distribution:
+    """Marks of those who handed something in."""
+
+    of: float
+    marks: Mapping[str, float] = field(repr=False)
+
+    @property
+    def mean(self) -> float:
+        return sum(self.marks.values()) / len(self.marks) if self.marks else 0.0
+
+    @property
+    def counts(self) -> list[int]:
+        """Number of students in each tenth of the scale; the best mark is in the last."""
+        counts = [0] * BINS
+        for mark in self.marks.values():
+            counts[min(int(mark * BINS / self.of + 1e-9), BINS - 1)] += 1
+        return counts
+
+    @property
+    def passed(self) -> int:
+        """Number of students with at least half of the best mark."""
+        return sum(mark >= self.of / 2 for mark in self.marks.values())
+
+
+@dataclass(frozen=True)
+class Preview:
+    """Marks before and after some steps."""
+
+    before: Distribution
+    now: Distribution
+
+    @property
+    def changes(self) -> list[MarkChange]:
+        """Marks that change, those that fall first, then those that rise most."""
+        changes = [
+            MarkChange(student, self.before.marks[student], mark)
+            for student, mark in self.now.marks.items()
+            if student in self.before.marks and mark != self.before.marks[student]
+        ]
+        return sorted(changes, key=lambda c: (c.now > c.before, -abs(c.now - c.before), folded(c.student)))
+
+    @property
+    def rise(self) -> int:
+        return sum(change.now > change.before for change in self.changes)
+
+    @property
+    def fall(self) -> int:
+        return sum(change.now < change.before for change in self.changes)
+
+
+@dataclass
+class Exam:
+    """Marked exam with the decisions on it."""
+
+    course: Course
+    issued: Issued
+    machine: Sequence[Graded]  #: as the marking gave them
+    decisions: Decisions
+    rejected: Sequence[Rejected] = ()
+    charged: Mapping[Sitting, float] = field(default_factory=dict)
+    measured: Mapping[tuple[str, str, int, int], Measure] | None = None
+
+    # -------------------------------------------------------------------- marks
+
+    @cached_property
+    def decided(self) -> list[Graded]:
+        """Sheets with the decisions on answers, and without adjustments."""
+        return [self.decisions.apply(graded) for graded in self.machine]
+
+    def _results(self, sheets: Iterable[Graded], adjustments: Adjustments) -> dict[str, Result]:
+        book = Gradebook(adjustments.on(self.issued), rejected=list(self.rejected), charged=self.charged)
+        for graded in sheets:
+            book.add(graded)
+        return dict(results(book))
+
+    def results(self, decisions: Decisions | None = None) -> dict[str, Result]:
+        """Return the result of each student with these decisions, by default with those that stand."""
+        if decisions is None:
+            sheets, decisions = self.decided, self.decisions
+        else:
+            sheets = [decisions.apply(graded) for graded in self.machine]
+        adjusted = decisions.adjustments.applied(sheets, self.issued, margins_of(self.course, self.issued))
+        return self._results(adjusted, decisions.adjustments)
+
+    def distribution(self, decisions: Decisions | None = None) -> Distribution:
+        """Return the marks of those who handed something in, by the scale with these decisions."""
+        adjustments = (decisions or self.decisions).adjustments
+        stated = (adjustments.on(self.issued).assignment or {}).get("mark")
+        scale = stated or {**USUAL_SCALE, "step": 0.01}
+        present = {graded.student for graded in self.machine}
+        marks = {
+            student: float(mark_on(scale, result.counts, result.out_of) or 0)
+            for student, result in self.results(decisions).items()
+            if student in present
+        }
+        return Distribution(scale["of"], marks)
+
+    def preview(self, steps: Sequence[Decision]) -> Preview:
+        """Return the marks before and after some more steps, or decisions on answers.
+
+        Raises
+        ------
+        BadInput
+            A step makes no sense.
+        """
+        check_steps((step for step in steps if not step.student and step.kind != WITHDRAWN), self.issued)
+        own = [step for step in steps if step.student]
+        after = self.decisions.with_steps((*own, *(step for step in steps if not step.student)))
+        return Preview(self.distribution(), self.distribution(after))
+
+    @cached_property
+    def provisional(self) -> dict[str, int]:
+        """Number of open answers of each student who has some."""
+        return {student: result.open for student, result in self.results().items() if result.open}
+
+    # --------------------------------------------------------------------- left
+
+    @cached_property
+    def measures(self) -> Mapping[tuple[str, str, int, int], Measure]:
+        """Measures by which sheets are compared, by student, exercise, seed and attempt."""
+        if self.measured is not None:
+            return self.measured
+        keys = [(*graded[:3], graded.sitting) for graded in self.machine]
+        return dict(zip(keys, measures(self.course, self.issued, self.machine), strict=True))
+
+    @cached_property
+    def questions(self) -> tuple[Question, ...]:
+        return questions_of(self.course, self.issued)
+
+    def number(self, exercise: str, part: str) -> str:
+        """Return the number of a question on the papers, such as ``2.3``."""
+        return number_of(self.questions, exercise, part)
+
+    @cached_property
+    def open(self) -> list[tuple[AnswerGroup, tuple[AnswerToReview, ...]]]:
+        """Groups of answers to review, each with those of its answers on which nobody has decided."""
+        drawn = drawn_questions(self.course, self.issued)
+        found = groups(self.machine, self.measures, self.questions, drawn)
+        waits = ((group, tuple(one for one in group.members if not self._is_decided(one))) for group in found)
+        return [(group, members) for group, members in waits if members and group.why not in SHOWN_ON_REQUEST]
+
+    def _is_decided(self, answer: AnswerToReview) -> bool:
+        return self.decisions.standing(answer.sheet, answer.mark) is not None
+
+    @cached_property
+    def cards(self) -> dict[str, tuple[int, int]]:
+        """Number of cards and of answers by the reason for which they wait."""
+        cards: dict[str, tuple[int, int]] = {}
+        for group, members in self.open:
+            count, answers = cards.get(group.why, (0, 0))
+            cards[group.why] = count + 1, answers + len(members)
+        return cards
+
+    @cached_property
+    def non_answers(self) -> list[AnswerToReview]:
+        """Answers that wait for a person and say nothing: a dash, "I do not know"."""
+        return [
+            one
+            for _, members in self.open
+            for one in members
+            if one.mark.verdict in WAITING and is_non_answer(one.mark.answer)
+        ]
+
+    def put_away(self, by: str, reason: str) -> list[Decision]:
+        """Return the decisions that give no points to all non-answers."""
+        return [
+            Decision(
+                one.student,
+                one.sheet.exercise,
+                str(one.sheet.seed),
+                one.mark.part,
+                GIVEN,
+                0.0,
+                reason,
+                one.mark.answer,
+                by,
+            )
+            for one in self.non_answers
+        ]
+
+    @cached_property
+    def patterns(self) -> list[SuspiciousPattern]:
+        """Patterns of sheets that a person should look at."""
+        by_kind: dict[str, dict[tuple[str, str], None]] = {kind: {} for kind in PATTERNS}
+        for graded in self.machine:
+            for part, line in graded.lines.items():
+                if kind := _pattern(line):
+                    by_kind[kind][graded.student, self.number(graded.exercise, part)] = None
+        lines = (
+            (graded.student, graded.exercise, str(graded.seed), part, line.read_as, line.verdict)
+            for graded in self.decided
+            for part, line in graded.lines.items()
+        )
+        for sheet in alike_lines(lines):
+            by_kind["alike"][sheet.student, ", ".join(sheet.owners[:2])] = None
+        return [SuspiciousPattern(kind, tuple(found)) for kind, found in by_kind.items() if found]
+
+    # ---------------------------------------------------------------- questions
+
+    @cached_property
+    def table(self) -> list[ExamQuestion]:
+        """Questions in the order of the sheets, as the class answered them without adjustments."""
+        adjustments = self.decisions.adjustments
+        plain = self._results(self.decided, Adjustments())
+        marks = marks_of_class(self.decided, plain, len(self.rejected))
+        by_question = {(p.exercise, p.part): p for p in measure(marks).parts}
+        worth = {
+            (name, str(part["id"])): part
+            for (name, _), record in self.issued.records.items()
+            for part in record["parts"]
+        }
+        return [
+            self._question(question, worth[question], adjustments, by_question.get(question))
+            for question in self.questions
+        ]
+
+    def _question(
+        self,
+        question: Question,
+        part: Mapping[str, Any],
+        adjustments: Adjustments,
+        statistics: PartStatistics | None,
+    ) -> ExamQuestion:
+        status = adjustments.statuses.get(question, "")
+        why, proposal = ("", None) if status or statistics is None else self._proposal(question, statistics)
+        return ExamQuestion(
+            *question,
+            self.number(*question),
+            float(part["points"]),
+            adjustments.worth(question[0], part),
+            status,
+            adjustments.tolerances.get(question, 1.0),
+            statistics,
+            why,
+            proposal,
+        )
+
+    def _proposal(self, question: Question, statistics: PartStatistics) -> tuple[str, Decision | None]:
+        """Return why a question needs a look, and the step that fits."""
+        if statistics.marked >= ENOUGH and statistics.mean <= _NOBODY:
+            if shared := self._shared_answer(question):
+                return "shared", step(ACCEPTED, *question, answer=shared)
+            return "nobody", step(NEUTRAL, *question)
+        discrimination = statistics.discrimination
+        if discrimination is not None and discrimination < 0:
+            return "reversed", step(SPARED, *question)
+        if discrimination is not None and discrimination < WEAK:
+            return "weak", None
+        return "", None
+
+    def _shared_answer(self, question: Question) -> str:
+        """Return the wrong answer that most of those who answered share; empty without one."""
+        exercise, part = question
+        lines = [g.lines[part] for g in self.machine if g.exercise == exercise and part in g.lines]
+        counts = Counter(written(line) for line in lines if line.verdict not in ("missing", *WAITING))
+        text, count = next(iter(counts.most_common(1)), ("", 0))
+        if count < max(3, _SHARED * counts.total()):
+            return ""
+        return next(line.answer for line in lines if written(line) == text)
+
+
+def _pattern(line: Mark) -> str:
+    """Return the pattern that an answer shows; empty for none."""
+    if line.verdict == "slip:exchanged":
+        return "exchanged"
+    if line.verdict == "slip:all_degrees" or "slip:all_degrees" in line.matches:
+        return "radians"
+    return "slash" if line.verdict == "unreadable" and _SLASH.fullmatch(line.answer) else ""
+
+
+def is_non_answer(text: str) -> bool:
+    """Return True for a text that says nothing: marks of punctuation, or words such as "I do not know" in any language."""
+    plain = " ".join(re.sub(r"[^\w\s]", " ", folded(text.replace("'", " ").replace("’", " "))).split())
+    return not plain or plain in _phrases()
+
+
+def _phrases() -> frozenset[str]:
+    return frozenset(folded(p) for lang in languages() for p in words(lang)["after"]["non_answers"])
+
+
+# ------------------------------------------------------------------------- steps
+
+
+def step(
+    kind: str,
+    exercise: str = "",
+    part: str = "",
+    points: float | None = None,
+    answer: str | None = None,
+    reason: str = "",
+    by: str = "",
+) -> Decision:
+    """Return a step: a decision on no single student, as of now."""
+    return Decision("", exercise, "", part, kind, points, reason, answer, by, datetime.now(UTC))
+
+
+def undoing(last: Decision, by: str, reason: str = "") -> Decision:
+    """Return the step that takes another back."""
+    now = datetime.now(UTC)
+    return last._replace(kind=WITHDRAWN, points=None, reason=reason, by=by, made=now, line=0, location="")
+
+
+class Restated(NamedTuple):
+    """Difference between an assignment's file and what was issued."""
+
+    steps: tuple[Decision, ...]  #: new weights, and the new step of the mark
+    notes: tuple[Message, ...]  #: differences that no step applies
+
+
+def restated(assignment: Assignment, exam: Exam) -> Restated:
+    """Return what an assignment's file states now and did not when it was issued, unless a step has applied it."""
+    adjustments, steps, notes = exam.decisions.adjustments, [], []
+    stated = exam.issued.assignment or {}
+    name = f"{assignment.name}.toml"
+    for asked in assignment.exercises:
+        record = next((r for (e, _), r in exam.issued.records.items() if e == asked.name), None)
+        if record is None:
+            notes.append(
+                Message("{file} names {exercise}, which was not issued", file=name, exercise=asked.name)
+            )
+            continue
+        exercise = exam.course[asked.name]
+        issued = {str(part["id"]): float(part["points"]) for part in record["parts"]}
+        variant = exercise.from_record(record)
+        own = [part for part in exercise.spec.parts if part.id in issued]
+        for part in with_points(variant.asking(own), asked).parts:
+            points = float(part.points)
+            now = adjustments.worth(asked.name, {"id": part.id, "points": issued[part.id]})
+            if points not in (issued[part.id], now):
+                steps.append(step(WEIGHT, asked.name, part.id, points))
+    before = stated.get("mark") or {}
+    if assignment.mark is not None:
+        if assignment.mark.step not in (before.get("step"), adjustments.scale(exam.issued)["step"]):
+            steps.append(step(STEP, points=assignment.mark.step))
+        if before and assignment.mark.of != before.get("of"):
+            notes.append(
+                Message(
+                    "{file} states a mark out of {now:g}, and the papers one out of {before:g}, which stays",
+                    file=name,
+                    now=assignment.mark.of,
+                    before=before.get("of"),
+                )
+            )
+    if dict(assignment.marking) != dict(stated.get("marking") or {}):
+        notes.append(
+            Message(
+                "{file} states other rules in [marking] than the papers, which stay: change a price or a margin here",
+                file=name,
+            )
+        )
+    return Restated(tuple(steps), tuple(notes))
+
+
+__all__ = ["FULL", "Exam", "Preview", "SuspiciousPattern", "restated", "step", "undoing"]
