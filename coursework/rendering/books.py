@@ -20,7 +20,7 @@ from coursework.rendering import html, pdf, views
 from coursework.rendering.environment import render
 from coursework.rendering.keeping import keeping
 from coursework.rendering.surface import surface
-from coursework.sheets.book import BlanksPiece, Book, BookExercise, LessonText, Piece
+from coursework.sheets.book import BlanksPiece, Book, BookChapter, BookExercise, LessonText, Piece
 
 _TALL = 78  #: mm that a drawing of a lesson takes at most
 
@@ -111,7 +111,7 @@ class BookPage:
 
     file: str
     title: str
-    of: LessonText | BookExercise | None = None
+    of: LessonText | BookExercise | BookChapter | None = None
 
 
 def pages(
@@ -169,6 +169,10 @@ def _pages(book: Book) -> Iterator[BookPage]:
                     f"{exercise.number} {exercise.handout.title}",
                     exercise,
                 )
+        if chapter.summary:
+            yield BookPage(
+                f"summary-{chapter.number}.html", book_words["summary"].format(chapter.number), chapter
+            )
 
 
 def _title_of(book: Book, lesson: str) -> str:
@@ -186,6 +190,8 @@ def _page(env: Environment, book: Book, page: BookPage, names: Mapping[str, Any]
         more = views.context(sheet) | {"one": page.of, "keeping": keeping([sheet], sheet.student, sheet.lang)}
         more["draws"] = surface(sheet) is not None
         return render(env, "book/exercise.html.j2", {**names, **more})
+    if isinstance(page.of, BookChapter):
+        return render(env, "book/summary.html.j2", {**names, "chapter": page.of})
     return render(env, "book/contents.html.j2", names)
 
 

@@ -130,6 +130,29 @@ class LessonText:
 
 
 @dataclass(frozen=True)
+class SummaryCard:
+    """Summary of a lesson: its formulas, each a number and lines of LaTeX; conditions, sign rules and traps, Markdown."""
+
+    lesson: LessonText
+    formulas: tuple[tuple[str, tuple[str, ...]], ...]
+    conditions: tuple[str, ...]
+    signs: tuple[str, ...]
+    traps: tuple[str, ...]
+
+    @property
+    def height(self) -> float:
+        """About how many lines it takes."""
+        formulas = sum(1 + 1.2 * len(lines) for _, lines in self.formulas)
+        return 2 + formulas + sum(1 + sum(1 + len(one) // 60 for one in told) for _, told in self.rules)
+
+    @property
+    def rules(self) -> tuple[tuple[str, tuple[str, ...]], ...]:
+        """The conditions, sign rules and traps by their names, without those of which there are none."""
+        named = (("conditions", self.conditions), ("signs", self.signs), ("traps", self.traps))
+        return tuple(item for item in named if item[1])
+
+
+@dataclass(frozen=True)
 class BookExercise:
     """An exercise of a book: the variant that the book prints, and its solution."""
 
@@ -153,6 +176,16 @@ class BookChapter:
     number: int
     title: str
     sections: tuple[BookSection, ...]
+    summary: tuple[SummaryCard, ...] = ()
+
+    @property
+    def summary_columns(self) -> tuple[tuple[SummaryCard, ...], ...]:
+        """The cards of the summary in two columns of about one height."""
+        heights = [card.height for card in self.summary]
+        cut = min(
+            range(1, len(heights) + 1), key=lambda k: max(sum(heights[:k]), sum(heights[k:])), default=0
+        )
+        return self.summary[:cut], self.summary[cut:]
 
     @property
     def exercises(self) -> tuple[BookExercise, ...]:

@@ -15,6 +15,7 @@ from coursework.errors import BadCourse, BadInput
 from coursework.issuing.issuing import distinct_variants
 from coursework.language.words import words
 from coursework.selfstudy.workbook.lessons import lesson_text
+from coursework.selfstudy.workbook.summaries import summary_of
 from coursework.sheets.answer_sheet import answer_sheet
 from coursework.sheets.book import Book, BookChapter, BookExercise, BookSection
 from coursework.sheets.handout import handout
@@ -108,7 +109,9 @@ def _chapter(
             advance()
         title = "" if lesson else placed.titles.get(lang, "")
         sections.append(BookSection(lesson, tuple(exercises), title))
-    return BookChapter(chapter.number, chapter.title(lang), tuple(sections))
+    lessons = [section.lesson for section in sections if section.lesson]
+    cards = tuple(filter(None, (summary_of(course.folder, lesson) for lesson in lessons)))
+    return BookChapter(chapter.number, chapter.title(lang), tuple(sections), cards)
 
 
 def _variant(exercise: CourseExercise[Variant], lang: str, seed: int) -> Variant:
