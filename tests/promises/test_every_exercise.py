@@ -174,6 +174,9 @@ def test_a_record_gives_back_its_variant(name):
 #: In a sheet's source: a drawing, its size, and where its letters stand.
 PLACES_ON_PAPER = r'<svg.*?</svg>|size: \([^)]*\)|letters: "(?:[^"\\]|\\.)*"'
 
+#: In a page: drawings, also those within its styles, and the styles.
+PLACES_ON_PAGE = r'<svg.*?</svg>|<style.*?</style>|data:image/svg[^"]*'
+
 
 @every_exercise
 @every_language
@@ -184,10 +187,10 @@ def test_a_handout_holds_no_answer(name, lang, seeds):
         handout, renderer = key.variant.in_language(lang).handout(), renderer_of(COURSE.folder)
         given = {f"{abs(v):.4g}" for v in key.variant.given.values() if isinstance(v, float)}
         texts = {
-            "page": re.sub(r"<svg.*?</svg>", "", renderer.html(handout), flags=re.DOTALL),
+            "page": re.sub(PLACES_ON_PAGE, "", renderer.html(handout), flags=re.DOTALL),
             "notebook": re.sub(r'"image/png": "[^"]*"', "", renderer.notebook(handout)),
             "sheet": re.sub(PLACES_ON_PAPER, "", renderer.typst(handout), flags=re.DOTALL),
-            "source": renderer.tex(handout, "f.pdf").replace("{,}", ","),
+            "source": renderer.tex(handout, "f.pdf").partition(r"\begin{document}")[2].replace("{,}", ","),
             "terminal": renderer.terminal(handout),
         }
         for part in key.variant.parts:

@@ -195,7 +195,7 @@ def test_an_answer_that_got_lost_makes_nobody_another_page(device):
     page.fill(device.box(), "6")
     told(page, "No connection")
     assert device.kept == {device.boxes[0]: "6"}
-    page.unroute_all()
+    page.unroute_all(behavior="wait")  # what is on its way again is over before another text is typed
     page.fill(device.box(), "66")
     told(page, KEPT)
     assert device.kept == {device.boxes[0]: "66"}
