@@ -82,6 +82,7 @@ def test_the_stable_form_keeps_all_digits_where_the_textbook_loses_half(rows, na
 
 
 @each_studied
+@pytest.mark.e2e
 def test_precisions_are_told_apart(rows, name):
     own = rows[name]
     assert 1e-9 < error(own, "position", "single") < 1e-5
@@ -117,6 +118,7 @@ def test_the_error_of_a_difference_is_a_v_of_its_step(rows, name):
     assert error(rows[name], "rate", "complex_step") < 1e-14
 
 
+@pytest.mark.e2e
 def test_a_tighter_tolerance_integrates_better(free):
     found = [row.error for row in free if row.method == "integration"]
     assert len(found) > 1
@@ -220,6 +222,7 @@ def test_an_exercise_without_numbers_is_told_in_one_line(course, capsys):
     assert "asks for no number" in capsys.readouterr().err
 
 
+@pytest.mark.e2e
 def test_what_loses_digits_is_named_and_whether_it_is_asked(course):
     """The rod's rate of a small crank loses digits; no answer of the exercise takes it."""
     line = overview(course["quick_return_whitworth"], quick=True)

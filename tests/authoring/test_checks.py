@@ -221,6 +221,7 @@ def inline(function, *arguments):
     return done
 
 
+@pytest.mark.e2e
 def test_processes_that_share_the_variants_report_what_one_does():
     alone, shared = (check(COURSE["grashof"], 20, rendered=0, submit=submit) for submit in (None, inline))
     assert alone.as_json() == shared.as_json()
@@ -228,6 +229,7 @@ def test_processes_that_share_the_variants_report_what_one_does():
     assert alone.counts["right answers"] > 20
 
 
+@pytest.mark.e2e
 def test_where_a_function_fails_on_a_variant_what_was_tried_before_is_reported_and_nothing_after(monkeypatch):
     tried, seen = checks.check_slips, []
 

@@ -71,6 +71,7 @@ def test_build_does_not_replace_other_variants_unasked(built, cli, tmp_path):
     assert not (built / "handouts" / "four_bar_positions").exists()
 
 
+@pytest.mark.e2e
 def test_what_no_font_draws_and_what_no_file_name_holds_costs_nothing(cli, tmp_path):
     out = tmp_path / "out"
     (tmp_path / "class.csv").write_text("student\nZoe\nZoë\nZoe 2\n王小明\n" + "x" * 300 + "\ncon\n", "utf-8")

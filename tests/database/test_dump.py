@@ -204,6 +204,7 @@ def test_only_an_empty_database_takes_a_dump(full, tmp_path):
         (lambda p: p.with_name("dump.json").write_text('{"format": "7"}', "utf-8"), "another version"),
     ],
 )
+@pytest.mark.e2e
 def test_a_spoiled_dump_is_refused_and_nothing_of_it_kept(full, tmp_path, spoil, says):
     dump(full, tmp_path / "dump")
     spoil(tmp_path / "dump/mark.csv")

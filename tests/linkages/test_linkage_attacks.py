@@ -83,6 +83,7 @@ def _use(path):
 
 
 @each_row("old, new", ATTACKS)
+@pytest.mark.e2e
 def test_a_strangers_file_runs_nothing_and_stops_soon(old, new, tmp_path):
     assert old in TOGGLE
     path = tmp_path / "toggle.toml"

@@ -18,6 +18,7 @@ PIECES = (
 
 @each_row("piece", PIECES)
 @each_row("way", ["{0}", "1{0}x", "({0}", "1-2 pivot{0}:"])
+@pytest.mark.e2e
 def test_a_graph_of_one_piece_over_and_over_is_read_at_once(piece, way):
     """Blank lines alone took hours, and every other request waited; a test that hangs has failed."""
     text = way.format(piece * LONGEST)[:LONGEST]

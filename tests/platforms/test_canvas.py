@@ -54,6 +54,7 @@ def questions(drawn, lang):
 
 
 @each_row("lang", LANGS)
+@pytest.mark.e2e
 def test_a_student_gets_each_question_once_and_all_points(drawn, lang):
     found = quiz(drawn, lang)
     assert sum(pick * points for pick, points, _ in found.values()) == drawn.pool(lang, CANVAS).points

@@ -36,6 +36,7 @@ once = cache(made)
 
 
 @every_platform
+@pytest.mark.e2e
 def test_the_same_export_has_the_same_bytes(platform):
     assert read(once(platform)) == read(made(platform))
 

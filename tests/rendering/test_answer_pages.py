@@ -98,6 +98,7 @@ def dark_box(picture, box: Box, around=1.0):
         pytest.param("vocabulary", "fr", "a4", marks=pytest.mark.slow),
     ],
 )
+@pytest.mark.e2e
 def test_a_printed_page_is_its_layout_to_a_tenth_of_a_millimetre(course, name, lang, size):
     sheet = handout(course, name, lang, size)
     printed = answer_pictures(builtin_renderer().on(size).pdf(sheet), len(sheet.answer_pages))
@@ -212,6 +213,7 @@ def test_two_builds_with_answer_pages_are_the_same_bytes(built):
     assert tree(built / "scan") == tree(built / "again")
 
 
+@pytest.mark.e2e
 def test_only_the_students_own_pdfs_differ_from_a_build_without(built):
     plain, scan = tree(built / "plain"), tree(built / "scan")
     differ = {name for name in plain if plain[name] != scan[name]}
@@ -247,6 +249,7 @@ def test_a_booklet_counts_answer_pages_to_their_student(built):
         assert int(row["first page"]) % 2
 
 
+@pytest.mark.e2e
 def test_papers_of_an_assignment_are_known_again_with_and_without_names(tmp_path, course):
     (tmp_path / "midterm.toml").write_text(
         'title = "Midterm"\nscan = true\nformats = ["pdf"]\nlang = ["fr", "en"]\n'

@@ -73,6 +73,7 @@ def test_no_handout_has_a_page_of_a_few_questions_that_are_left_over(
 
 @every_language
 @every_paper
+@pytest.mark.e2e
 def test_nor_has_a_paper(pages_of_questions, size, lang):
     made = paper(heading(lang), (*NAMES, "four_bar_motion"))
     source = typst_source(RENDERER.template_folders, [made], size)

@@ -128,6 +128,7 @@ def test_a_good_scan_is_read_whole_whatever_the_pen(rows, sheet):
         assert [f.text for f in found.fields] == [w.text for w in wrote]
 
 
+@pytest.mark.e2e
 def test_a_page_says_the_same_however_it_is_turned(sheet):
     filled, _ = answered(sheet, 11)
     upright = scanned(filled, Scan(dpi=200), np.random.default_rng(0))
@@ -166,6 +167,7 @@ def test_two_marks_are_not(sheet):
         3,
     ),
 )
+@pytest.mark.e2e
 def test_boxes_are_found_to_half_a_millimetre(rows, sheet):
     for scan in rows:
         picture = scanned(sheet, scan, np.random.default_rng(4))

@@ -67,6 +67,7 @@ def test_a_page_of_no_paper_is_refused_by_name_and_not_taken_for_a_blank_one(siz
         picture_at(path, 1)
 
 
+@pytest.mark.e2e
 def test_a_page_that_takes_for_ever_to_be_drawn_is_ended(tmp_path, monkeypatch):
     """What is no picture of a scanner is drawn in a process of its own, which is ended."""
     path = tmp_path / "lines.pdf"
@@ -141,6 +142,7 @@ def kept(folder):
     ]
 
 
+@pytest.mark.e2e
 def test_anothers_page_with_a_pasted_code_waits_for_a_person(built, places, tmp_path):
     out, sheets = built[0] / "out", built[1]
     rng = np.random.default_rng(3)
@@ -154,6 +156,7 @@ def test_anothers_page_with_a_pasted_code_waits_for_a_person(built, places, tmp_
 
 @pytest.mark.parametrize("step", [6, pytest.param(1, marks=slow)], ids=["few", "all"])
 @each_row("kind", ["office scanner", "150 dpi", "black and white", "photograph", "light copy", "coffee"])
+@pytest.mark.e2e
 def test_an_honest_page_is_never_taken_for_anothers(kind, step, built, places):
     """However it is scanned; and whose it is, where the scan is clean."""
     from coursework.scanning.codes import codes_in
@@ -182,6 +185,7 @@ def test_an_honest_page_is_never_taken_for_anothers(kind, step, built, places):
 
 
 @pytest.mark.parametrize("turn", [1, 2, *(pytest.param(turn, marks=slow) for turn in (0, 3))])
+@pytest.mark.e2e
 def test_a_copy_is_known_however_it_is_turned(turn, built, tmp_path):
     rng = np.random.default_rng(4)
     picture = scanned(built[1]["Zoé"], Scan(dpi=200, skew=0.7, noise=2.5), rng)

@@ -163,6 +163,7 @@ def test_the_staff_has_no_allowance_to_spend(class_of_three):
     assert class_of_three.browser(TEACHER).get("/practice").status_code == 200
 
 
+@pytest.mark.e2e
 def test_each_page_of_a_student_is_counted_by_what_it_takes_of_a_processor(site, monkeypatch):
     """Refusals too; what a process beside takes for it counts as well."""
     took = []
@@ -265,6 +266,7 @@ def test_a_file_that_takes_too_long_is_ended_and_told(class_of_three, monkeypatc
         assert (reply.status_code, said in reply.text) == (422, True)
 
 
+@pytest.mark.e2e
 def test_one_person_uploads_one_file_at_a_time_and_others_are_answered(class_of_three, monkeypatch):
     """Ten at once took five gigabytes, and every place of the process: another student's page did not come."""
     number = dealt(class_of_three)

@@ -5,6 +5,7 @@ import json
 import sqlite3
 from contextlib import closing
 
+import pytest
 from site_people import TEACHER, ZOE
 from sqlalchemy import JSON, Boolean, Double, Integer, String, insert, select, update
 
@@ -81,6 +82,7 @@ def erase(site):
     return site.browser(TEACHER).fill(f"/desk/people/{site.ids[ZOE]}/erase", {"name": ZOE})
 
 
+@pytest.mark.e2e
 def test_no_byte_of_who_is_erased_is_left_in_any_file(class_of_three, tmp_path):
     fill(class_of_three)
     with class_of_three.site.store.reading() as connection:

@@ -81,6 +81,7 @@ def walk(site):
     return counted
 
 
+@pytest.mark.e2e
 def test_no_page_needs_more_statements_where_there_is_more(site):
     before = walk(site)
     grow(site)

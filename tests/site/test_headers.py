@@ -33,6 +33,7 @@ def addresses(routes, before=""):
             yield re.sub(r"\{\w+(:\w+)?\}", "1", before + one.path)
 
 
+@pytest.mark.e2e
 def test_every_response_has_the_same_policy(linked):
     asked, lacking = 0, {}
     places = [

@@ -96,6 +96,7 @@ def test_a_step_holds_one_idea(name):
 
 
 @pytest.mark.parametrize("lang", ["en", "fr"])
+@pytest.mark.e2e
 def test_a_lesson_stands_on_the_site_with_its_figures_and_leads_to_its_exercises(class_, lang):
     browser = class_.browser(ZOE, lang)
     page = browser.get(f"/lessons/{LESSON}").text

@@ -69,6 +69,7 @@ NAMES = [
 
 
 @each_row("name", [n for n in NAMES if n.strip() == n])
+@pytest.mark.e2e
 def test_a_name_leads_nowhere_else(name, tmp_path_factory):
     own = OwnCourse(tmp_path_factory.mktemp("own"))
     before = sorted(own.folder.parent.rglob("*"))

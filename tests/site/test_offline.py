@@ -16,6 +16,7 @@ from coursework.site.frame.cookies import COOKIE
 EXERCISE = "slotted_mechanism"
 
 
+@pytest.mark.e2e
 def test_only_pages_to_study_and_open_papers_are_marked(tmp_path):
     site = Filled(f"sqlite:///{tmp_path}/site.db")
     places, marked = fillings(site), set()

@@ -59,6 +59,7 @@ def test_it_is_filled_once_everything_was_found(class_of_three):
 
 
 @pytest.mark.parametrize("order", [(NAME, *HANDFUL), pytest.param((), marks=slow)], ids=["few", "all"])
+@pytest.mark.e2e
 def test_what_is_made_ready_changes_no_page(tmp_path, monkeypatch, order):
     if order:
         monkeypatch.setattr(Folder, "study_order", order)

@@ -245,6 +245,7 @@ def test_a_name_that_is_a_word_strikes_no_other(site):
 # ------------------------------------------------------------------- logs, hosts
 
 
+@pytest.mark.e2e
 def test_logs_hold_no_answer_no_name_and_no_invitation(site, caplog):
     caplog.set_level(logging.DEBUG)
     from site_walk import filled, fillings

@@ -55,6 +55,7 @@ def test_no_paper_of_a_site_is_drawn_on_a_site_of_ones_own_nor_by_its_code(tmp_p
 
 @pytest.mark.parametrize("most", [1, pytest.param(1000, marks=slow)], ids=["few", "all"])
 @pytest.mark.parametrize("in_file", [True, False])
+@pytest.mark.e2e
 def test_no_page_and_no_file_of_a_student_holds_the_secret(class_of_three, in_file, most, caplog):
     number = published_on(class_of_three, f'secret = "{SECRET}"\n'.encode() + TOML if in_file else TOML)
     with class_of_three.site.store.reading() as connection:

@@ -69,6 +69,7 @@ if __name__ == "__main__":
 """
 
 
+@pytest.mark.e2e
 def test_a_command_whose_threads_wait_for_ever_ends_on_a_signal_with_its_processes(tmp_path):
     command = begun(tmp_path, script=STUCK)
     _, said = ended(command)

@@ -279,6 +279,7 @@ FILMS = pytest.mark.parametrize(
 
 
 @FILMS
+@pytest.mark.e2e
 def test_in_the_film_the_drawn_ball_slips_at_none_of_its_four_contacts(seed):
     _, frames, A_3 = drawn(seed)
     given = EXERCISE.variant(seed).given

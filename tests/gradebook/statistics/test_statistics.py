@@ -556,6 +556,7 @@ def test_an_answer_accepted_by_hand_is_right_in_the_report(small_course, tmp_pat
 
 
 @each_row("lang", ["fr", "en"])
+@pytest.mark.e2e
 def test_a_letter_with_an_arrow_is_drawn_in_the_labels_of_charts(course, lang):
     """Every question of the course as a chart names it has no arrow left beside its letter."""
     asked = [q for name in course.names for q in course[name].variant(0, lang).handout().questions]

@@ -27,6 +27,7 @@ def signed(platform, claims):
 
 
 @pytest.mark.parametrize("step", [8, pytest.param(4, marks=slow)])
+@pytest.mark.e2e
 def test_no_claim_breaks_a_launch(tool, step):
     """No status of a fault, and no text as HTML, whatever a signed claim holds."""
     tried = 0
@@ -64,6 +65,7 @@ def test_no_claim_breaks_a_launch(tool, step):
         ("K", "\u212a"),
     ],
 )
+@pytest.mark.e2e
 def test_two_people_are_never_one(tool, one, other):
     """What a platform calls people is kept to the letter; what is too long to be kept is refused."""
     before = {subject for (subject,) in tool.one(identity.c.subject)}
