@@ -21,12 +21,33 @@ BANNED = {
         r"(?<!\*)\bhinge[ds]?\b": "revolute joint, pinned",
         r"\b(two|three|four|six|seven|eight|eleven) (pivots(?!:)(?! \$)|slides)\b(?! (of|on|in)\b)": "revolute, prismatic joints",
         r"\b(a|one) (pivot|slide) (and a|or a) (pivot|slide)\b": "a revolute and a prismatic joint",
+        r"\bpivots and slides\b": "revolute and prismatic joints",
+        r"\bmodes? of assembly\b": "assembly mode",
+        r"\b(forces?|couples?|torques?) of inertia\b": "inertia force, inertia torque",
+        r"\bat (a|the) (constant|steady) rate\b": "at constant speed",
+        r"\bmotions? to and fro\b": "reciprocating motion",
+        r"\bunevenness\b": "coefficient of fluctuation",
+        r"\bcoefficients? of quick return\b": "time ratio",
+        r"\bGrashof's law\b": "Grashof's rule",
+        r"\b(at which|ill-conditioned) places?\b": "position",
+        r"\bhalf (worked|an example)\b|\bbare example\b": "part-worked, on your own",
+        r"\bdead points? of the (output|rocker|piston)\b": "limit position, or dead centre",
+        r"\bhoeken\b": "Hoecken",
     },
     "fr": {
         r"\bépures?\b": "polygone",
         r"\b(un|du|le|au) quatre[- ]barres\b|\bmécanisme (à )?quatre barres\b(?!\*)": "quadrilatère articulé",
         r"\b(la|une|cette|sa)\s+coulisses?\b": "guide",
         r"\bprédi(sez|re)\b": "prévoyez, prévoir",
+        r"\bsystèmes? à (piston|coulisse)\b|\bmanivelles? à coulisse\b": "système bielle-manivelle, mécanisme à coulisse",
+        r"\b(manivelle et bielle|bielle) (sont )?étendues?\b": "dans le prolongement l'une de l'autre",
+        r"\bpoints? morts? (de la sortie|du balancier|extérieurs?|intérieurs?)\b": "position extrême, point mort haut ou bas",
+        r"\btourne le dos\b": "est dirigée à l'opposé",
+        r"\bdésaxage\b": "excentration",
+        r"\bcompensation\b": "annulation catastrophique",
+        r"\b(de|à) combien pour cent\b|\bregarde(z|r|riez)(-vous)? deux fois\b": "de quel pourcentage, vous méfieriez-vous",
+        r"\bétau limeur\b|\bà quel des\b|\bmécanismes aux\b": "étau-limeur, auquel des, mécanismes à",
+        r"\bhoeken\b": "Hoecken",
     },
 }
 
@@ -65,3 +86,5 @@ def readable(file: Path) -> str:
 def test_slips_would_be_found():
     assert slips("en", "Sought are the angles, square to the torsor that a hinge lets be.")
     assert len(slips("fr", "L'épure du quatre barres : prédisez où va la coulisse.")) == 4
+    assert len(slips("en", "At a steady rate, the forces of inertia of a motion to and fro; half an example.")) == 4
+    assert len(slips("fr", "Le système à piston, bielle étendue : de combien pour cent l'étau limeur ?")) == 4

@@ -179,6 +179,39 @@ def the_arm_of_a_jack_is_greatest_where_it_is_perpendicular_to_the_shorter(cours
     assert DP**2 + jack[at] ** 2 == pytest.approx(DB**2, rel=0.01), "a right angle at P"
 
 
+@claim(
+    "mechanical_advantage_and_dead_points",
+    "Where both are zero, at a change point",
+    "Là où tous deux sont nuls, à un point de changement",
+)
+def at_a_change_point_the_coupler_is_in_line_with_both_its_neighbours(course):
+    bars = {"r1": 100.0, "r2": 50.0, "r3": 70.0, "r4": 80.0, "mode": "open", "omega2": 1.0, "alpha2": 0.0}
+    found = course["four_bar_motion"].solve(**bars, theta2=180.0 - 1e-6, only=("theta3", "theta4"))
+    for angle in (found["theta4"] - found["theta3"], 180.0 - found["theta3"]):
+        assert abs(np.sin(np.radians(angle))) < 1e-6
+
+
+# -- forces_by_groups, rolling -----------------------------------------------------------------------------
+
+
+@claim("forces_by_groups", "It may even fall at first", "Il peut même baisser d'abord")
+def with_friction_the_mean_torque_falls_and_then_rises_with_the_speed(course):
+    slow, faster, fast = (
+        mean_torque(course, "load", "friction", "inertia", omega2=omega2) for omega2 in (30.0, 60.0, 120.0)
+    )
+    assert faster < slow < mean_torque(course, "load", "friction") < fast
+
+
+@claim("rolling", "larger than the rolling, here alone", "Le pivotement dépasse le roulement, et ici seulement")
+def the_ball_spins_more_than_it_rolls_on_the_output_shaft_alone(course):
+    R, r, x, z = 40.0, 15.0, np.array([1.0, 0.0]), np.array([0.0, 1.0])
+    rotations = {"A": (x + z, x), "B": (x + z, z), "C": (x + (1 + 2 * r / R) * z, x)}
+    rotations["D"] = x + (1 + 2 * r / (R + r)) * z, z
+    spins = {at: abs(turns @ normal) for at, (turns, normal) in rotations.items()}
+    rolls = {at: np.sqrt(turns @ turns - spins[at] ** 2) for at, (turns, _) in rotations.items()}
+    assert [at for at in spins if spins[at] > rolls[at] + 1e-9] == ["D"]
+
+
 # -- grashof_and_coupler_curves ----------------------------------------------------------------------------
 
 
