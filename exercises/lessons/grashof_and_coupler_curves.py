@@ -307,6 +307,7 @@ def _plated(O, A, B, C, P, plate):
 # it is passed downwards. In and out of the film between these angles of the crank, where the film goes with it.
 CLAW = ((35.0, 11.0, 25.0, 22.5), 22.0, 70.0)
 CLAW_IN, CLAW_OUT, UPRIGHT = 103.0, 258.0, complex(polar(1.0, -154.0))
+FRONT, FILM = 9.0, 22.0  #: how far from its edge the film stands as seen from the front, and how wide, mm
 
 
 def film_advance():
@@ -331,6 +332,7 @@ def _film_at(theta2):
     return Figure(
         closed(_claw(FINE)[4]),
         *strip,
+        *_front(top.real + FRONT, holes, window),
         link(O, A, label="2"),
         link(A, B, P, label="3"),
         link(C, B, label="4"),
@@ -341,6 +343,21 @@ def _film_at(theta2):
         point(P, "P"),
         paper_mm=(100, 95),
     )
+
+
+def _front(left, holes, window):
+    """The film seen from the front: its outline, the perforations that the claw enters, and the pictures between them."""
+
+    def box(start, end, low, high):
+        low, high = (min(max(y, window[0]), window[1]) for y in (low, high))
+        start, end = (start, end) if low < high else (0.0, 0.0)  # out of sight, on the outline
+        return closed([
+            complex(left + x, y) for x, y in ((start, low), (end, low), (end, high), (start, high))
+        ])  # fmt: skip
+
+    perforations = [box(1.2, 3.6, y - 1.4, y + 1.4) for y in holes]
+    pictures = [box(5.0, FILM - 2.0, lower + 1.4, upper - 1.4) for lower, upper in pairwise(holes)]
+    return [box(0.0, FILM, *window), *perforations, *pictures]
 
 
 def _piece(side, upper, lower, window):

@@ -86,5 +86,8 @@ def readable(file: Path) -> str:
 def test_slips_would_be_found():
     assert slips("en", "Sought are the angles, square to the torsor that a hinge lets be.")
     assert len(slips("fr", "L'épure du quatre barres : prédisez où va la coulisse.")) == 4
-    assert len(slips("en", "At a steady rate, the forces of inertia of a motion to and fro; half an example.")) == 4
+    assert (
+        len(slips("en", "At a steady rate, the forces of inertia of a motion to and fro; half an example."))
+        == 4
+    )
     assert len(slips("fr", "Le système à piston, bielle étendue : de combien pour cent l'étau limeur ?")) == 4

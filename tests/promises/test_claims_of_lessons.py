@@ -202,7 +202,9 @@ def with_friction_the_mean_torque_falls_and_then_rises_with_the_speed(course):
     assert faster < slow < mean_torque(course, "load", "friction") < fast
 
 
-@claim("rolling", "larger than the rolling, here alone", "Le pivotement dépasse le roulement, et ici seulement")
+@claim(
+    "rolling", "larger than the rolling, here alone", "Le pivotement dépasse le roulement, et ici seulement"
+)
 def the_ball_spins_more_than_it_rolls_on_the_output_shaft_alone(course):
     R, r, x, z = 40.0, 15.0, np.array([1.0, 0.0]), np.array([0.0, 1.0])
     rotations = {"A": (x + z, x), "B": (x + z, z), "C": (x + (1 + 2 * r / R) * z, x)}

@@ -32,7 +32,7 @@ from coursework.selfstudy.worked import WorkedExample
 from coursework.sheets.book import DrawnPiece, Piece, PrintedPiece, ProsePiece
 
 STILLS = 4  #: instants of what moves that stand on paper
-_CELL = (80.0, 46.0)  #: the room of one of them, mm
+_CELL = (82.0, 60.0)  #: the room of one of them, mm
 _ASKED = ("seed", "motion", "count")
 
 
