@@ -20,6 +20,7 @@ if TYPE_CHECKING:
 #: By name, the file of this room that holds the command, and what it is called there.
 COMMANDS = {
     "accuracy": ("measure", "accuracy"),
+    "after": ("after", "after"),
     "animate": ("move", "animate"),
     "build": ("make", "build"),
     "check": ("author", "check"),

@@ -4,6 +4,7 @@ decision, under the file's name. So an old file states nothing new, and an edite
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterable, Sequence
 from contextlib import suppress
 from datetime import UTC, datetime
@@ -15,6 +16,7 @@ from sqlalchemy import Connection, delete, insert, literal, select
 
 from coursework.database.tables import decision, mark, marking, variant, worksheet
 from coursework.errors import BadInput, UnknownName, nearest
+from coursework.gradebook.adjustments import ADJUSTMENTS, check_adjustment
 from coursework.gradebook.decisions import (
     ACCEPTED_FILE,
     DECISIONS_FILE,
@@ -45,9 +47,10 @@ def decide(connection: Connection, assignment_id: int, decisions: Iterable[Decis
     """
     decisions = list(decisions)
     for one in decisions:
-        if one.kind not in KINDS:
+        kinds = KINDS if one.student else (*KINDS, *ADJUSTMENTS)
+        if one.kind not in kinds:
             raise UnknownName(
-                "no kind of decision {kind!r}{nearest}", kind=one.kind, nearest=nearest(one.kind, KINDS)
+                "no kind of decision {kind!r}{nearest}", kind=one.kind, nearest=nearest(one.kind, kinds)
             )
         if one.kind == GIVEN and one.points is None:
             raise BadInput("points are given, or the answer is accepted: say how many")
@@ -68,6 +71,9 @@ def _check(connection: Connection, assignment_id: int, decisions: Sequence[Decis
     for row in connection.execute(query) if decisions else ():
         worth.setdefault(row.exercise, {}).update({str(p["id"]): float(p["points"]) for p in row.parts})
     for one in decisions:
+        if one.kind in ADJUSTMENTS:
+            check_adjustment(one, worth)
+            continue
         parts = worth.get(one.exercise)
         if parts is None:
             raise UnknownName("no exercise {exercise!r} was issued", exercise=one.exercise)
@@ -163,8 +169,16 @@ def store_new_decisions(connection: Connection, assignment_id: int, files: Decis
     BadInput
         An answer is given more points than its part has.
     """
-    was = _by_answer(one for path in files.files for one in _remembered(connection, assignment_id, path))
-    now = _by_answer(one._replace(line=0, location="") for one in files.lines)
+    remembered = [one for path in files.files for one in _remembered(connection, assignment_id, path)]
+    known = Counter(one[:_STATED] for one in remembered if not one.student)
+    new_steps = []
+    for one in files.lines:
+        if not one.student:
+            known[one[:_STATED]] -= 1
+            new_steps += [one] if known[one[:_STATED]] < 0 else []
+    decide(connection, assignment_id, new_steps)
+    was = _by_answer(one for one in remembered if one.student)
+    now = _by_answer(one._replace(line=0, location="") for one in files.lines if one.student)
     decisions = read_decisions(connection, assignment_id)
     names = {TO_MARK_FILE, ACCEPTED_FILE, DECISIONS_FILE, *(path.name for path in files.files)}
     changed = [on for on in dict.fromkeys((*was, *now)) if was.get(on) != now.get(on)]
@@ -176,7 +190,7 @@ def store_new_decisions(connection: Connection, assignment_id: int, files: Decis
         for one in now.get(on, ()):
             _store_decision(connection, assignment_id, one)
     remember_written(connection, assignment_id, files)
-    return len(changed)
+    return len(changed) + len(new_steps)
 
 
 def remember_written(connection: Connection, assignment_id: int, files: DecisionFiles) -> None:

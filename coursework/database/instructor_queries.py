@@ -153,7 +153,8 @@ def decided_since(connection: Connection, assignment_id: int, after: int) -> lis
 
 def undoable(connection: Connection, assignment_id: int, by: str) -> list[Decision]:
     """Return the latest batch of decisions of a person that can be undone: no later decision replaces them."""
-    query = select(decision).where(decision.c.assignment_id == assignment_id).order_by(decision.c.id.desc())
+    query = select(decision).where(decision.c.assignment_id == assignment_id, decision.c.student != "")
+    query = query.order_by(decision.c.id.desc())
     met: set[tuple[str, ...]] = set()
     batch: list[Decision] = []
     for row in connection.execute(query):

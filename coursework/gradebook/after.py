@@ -14,7 +14,7 @@ from functools import cached_property
 from typing import Any, NamedTuple
 
 from coursework.course.course import Course
-from coursework.gradebook.adjustments import FULL, NEUTRAL, SPARED, STEP, WEIGHT, Adjustments, Question
+from coursework.gradebook.adjustments import NEUTRAL, SPARED, STEP, WEIGHT, Adjustments, Question
 from coursework.gradebook.book import Gradebook, Result, Sitting, results
 from coursework.gradebook.decisions import ACCEPTED, GIVEN, WITHDRAWN, Decision, Decisions, check_steps
 from coursework.gradebook.graded_sheet import WAITING, Graded
@@ -38,9 +38,9 @@ from coursework.issuing.assignment import Assignment
 from coursework.issuing.issued import Issued
 from coursework.issuing.students import folded
 from coursework.issuing.variant_assignment import with_points
-from coursework.language.words import languages, words
 from coursework.marking.mark import Mark
 from coursework.messages import Message
+from coursework.parsing.spoken import refers_elsewhere, says_nothing
 
 _SLASH = re.compile(r"[^/]*[0-9][^/]*/[^/]*[0-9][^/]*")
 _SHARED = 0.5  #: of the answers to a question, from which one wrong answer may be right after all
@@ -55,7 +55,7 @@ class SuspiciousPattern(NamedTuple):
     """Suspicious pattern, and the sheets that show it."""
 
     kind: str
-    sheets: tuple[tuple[str, str], ...]  #: student, and the question or what it is like
+    sheets: tuple[tuple[str, str], ...]  #: student, and the questions or whose papers it is like
 
 
 @dataclass(frozen=True)
@@ -247,8 +247,15 @@ class Exam:
             one
             for _, members in self.open
             for one in members
-            if one.mark.verdict in WAITING and is_non_answer(one.mark.answer)
+            if one.mark.verdict in WAITING
+            and is_non_answer(
+                one.mark.answer, is_number=self._asks_a_number(one.sheet.exercise, one.mark.part)
+            )
         ]
+
+    def _asks_a_number(self, exercise: str, part: str) -> bool:
+        asked = self.course[exercise].spec.part(part)
+        return asked is not None and asked.sort.is_number
 
     def put_away(self, by: str, reason: str) -> list[Decision]:
         """Return the decisions that give no points to all non-answers."""
@@ -267,22 +274,32 @@ class Exam:
             for one in self.non_answers
         ]
 
+    def taken_back(self, by: str, reasons: Iterable[str]) -> list[Decision]:
+        """Return the decisions that take back those that put non-answers away, for one of these reasons."""
+        given = [one for one in self.decisions.own if one.kind == GIVEN and one.reason in {*reasons}]
+        return [one._replace(kind=WITHDRAWN, points=None, reason="", by=by) for one in given]
+
     @cached_property
     def patterns(self) -> list[SuspiciousPattern]:
         """Patterns of sheets that a person should look at."""
-        by_kind: dict[str, dict[tuple[str, str], None]] = {kind: {} for kind in PATTERNS}
+        by_kind: dict[str, dict[str, list[str]]] = {kind: {} for kind in PATTERNS}
         for graded in self.machine:
             for part, line in graded.lines.items():
                 if kind := _pattern(line):
-                    by_kind[kind][graded.student, self.number(graded.exercise, part)] = None
+                    places = by_kind[kind].setdefault(graded.student, [])
+                    places.append(self.number(graded.exercise, part))
         lines = (
             (graded.student, graded.exercise, str(graded.seed), part, line.read_as, line.verdict)
             for graded in self.decided
             for part, line in graded.lines.items()
         )
         for sheet in alike_lines(lines):
-            by_kind["alike"][sheet.student, ", ".join(sheet.owners[:2])] = None
-        return [SuspiciousPattern(kind, tuple(found)) for kind, found in by_kind.items() if found]
+            by_kind["alike"].setdefault(sheet.student, []).extend(sheet.owners[:2])
+        return [
+            SuspiciousPattern(kind, tuple((student, ", ".join(places)) for student, places in found.items()))
+            for kind, found in by_kind.items()
+            if found
+        ]
 
     # ---------------------------------------------------------------- questions
 
@@ -357,14 +374,14 @@ def _pattern(line: Mark) -> str:
     return "slash" if line.verdict == "unreadable" and _SLASH.fullmatch(line.answer) else ""
 
 
-def is_non_answer(text: str) -> bool:
-    """Return True for a text that says nothing: marks of punctuation, or words such as "I do not know" in any language."""
-    plain = " ".join(re.sub(r"[^\w\s]", " ", folded(text.replace("'", " ").replace("’", " "))).split())
-    return not plain or plain in _phrases()
-
-
-def _phrases() -> frozenset[str]:
-    return frozenset(folded(p) for lang in languages() for p in words(lang)["after"]["non_answers"])
+def is_non_answer(text: str, *, is_number: bool) -> bool:
+    """Return True for a text that says nothing: words such as "no time", and, where a number is asked, a text without one."""
+    plain = " ".join(text.split())
+    if not any(c.isalnum() for c in plain) or says_nothing(plain):
+        return True
+    if refers_elsewhere(plain):
+        return False
+    return is_number and not re.search(r"[0-9π∞²³½√]|pi\b|inf", plain, re.IGNORECASE)
 
 
 # ------------------------------------------------------------------------- steps
@@ -438,6 +455,3 @@ def restated(assignment: Assignment, exam: Exam) -> Restated:
             )
         )
     return Restated(tuple(steps), tuple(notes))
-
-
-__all__ = ["FULL", "Exam", "Preview", "SuspiciousPattern", "restated", "step", "undoing"]

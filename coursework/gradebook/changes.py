@@ -98,10 +98,12 @@ class EarlierMarks:
 class History:
     """Changes of earlier markings of a folder, to which the new ones are added.
 
-    Each has its day, and the student's mark of the summary before and now, out of 20 where no assignment states a scale.
+    Each has its day, and the student's mark of the summary before and now, out of 20 where no assignment states a scale. Of
+    marks with adjustments those are listed too that changed without an answer.
     """
 
-    def __init__(self, folder: Path, day: str) -> None:
+    def __init__(self, folder: Path, day: str, *, is_adjusted: bool = False) -> None:
+        self._is_adjusted = is_adjusted
         path, summary = folder / "changes.csv", folder / "summary.csv"
         self._day = day
         self._earlier = [_plain_row(row) for row in rows_of(path)] if path.exists() else []
@@ -116,7 +118,7 @@ class History:
         if last is None or any(last[column] != str(change[column]) for column in _TURN):
             self._new.append(change)
 
-    def rows(self, summary: Iterable[Mapping[str, Any]]) -> Iterator[dict[str, Any]]:
+    def rows(self, summary: Sequence[Mapping[str, Any]]) -> Iterator[dict[str, Any]]:
         """Yield all changes, the earlier first; ``summary`` contains the rows of the new summary."""
         marks = _marks_in(summary)
         yield from self._earlier
@@ -124,6 +126,13 @@ class History:
             student = folded(change["student"])
             marks_columns = {"mark_before": self._marks.get(student, ""), "mark_now": marks.get(student, "")}
             yield {"date": self._day, **change, **marks_columns}
+        told = {folded(change["student"]) for change in self._new}
+        for row in summary:  # a question or the scale changed, and no answer
+            student = folded(str(row.get("student", "")))
+            before, now = self._marks.get(student), marks.get(student, "")
+            if self._is_adjusted and student not in told and before not in (None, now):
+                cells = {"date": self._day, "student": row["student"], "mark_before": before, "mark_now": now}
+                yield {**dict.fromkeys(CHANGES_COLUMNS, ""), **cells}
 
 
 def _plain_row(row: Mapping[str, str]) -> dict[str, str]:

@@ -90,10 +90,14 @@ class Decisions:
                 of_all.setdefault((step.exercise, step.part), []).append(step)
         return of_all
 
+    @property
+    def own(self) -> list[Decision]:
+        """Decisions on an answer of a student, those on one answer in their order."""
+        return [one for decisions in self._of.values() for one in decisions]
+
     def with_steps(self, steps: Iterable[Decision]) -> Decisions:
-        """Return these decisions with some more steps."""
-        own = (one for decisions in self._of.values() for one in decisions)
-        return Decisions((*own, *self.steps, *steps))
+        """Return these decisions with some more."""
+        return Decisions((*self.own, *self.steps, *steps))
 
     def on(self, student: str, exercise: str, part: str) -> Sequence[Decision]:
         """Return all decisions on a student's answer, of any variant."""

@@ -130,7 +130,7 @@ def write_marks(
     """Write the files of :func:`grade_files` for sheets that are marked on demand, with the
     ``decisions`` that count; ``charged`` contains the penalties of late submissions as shares of the points."""
     before = EarlierMarks(out / "marks.csv")
-    history = History(out, _day(form))
+    history = History(out, _day(form), is_adjusted=bool(decisions.steps))
     check_steps(decisions.standing_steps, issued)
     adjustments = decisions.adjustments
     book = Gradebook(adjustments.on(issued), sheets.rows_in, sheets.blanks, sheets.rejected, sheets.warnings)

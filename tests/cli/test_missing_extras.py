@@ -18,6 +18,7 @@ WITHOUT = {
         "database show", "database show nothere.db", "database history", "database dump nothere.db nowhere",
         "database restore nowhere nothere.db", "database new-key", "database sign-out",
         "build nosuch --db nowhere/x.db", "grade nothere.csv --issued nope.json --db nowhere/x.db", "report --db nope.db",
+        "after nope.toml --db nowhere/x.db",
     ],
     "lti": ["lti keys new", "lti platform", "lti roster", "lti scores"],
     "scan": ["scan", "scan nothere.pdf --issued nope.json", "build nosuch --with scan"],

@@ -1,0 +1,477 @@
+"""Command of the evening after an exam: after."""
+
+from __future__ import annotations
+
+import getpass
+import re
+import sys
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from coursework.cli.options import (
+    DONE,
+    FOUND,
+    FilePath,
+    assignment_option,
+    db_option,
+    json_option,
+    opened,
+    writes,
+)
+from coursework.cli.printing import print_json, print_table, progress_bar, say, warn
+from coursework.errors import BadInput, counted
+from coursework.language.words import languages, words
+from coursework.messages import Message, language_of_messages, localised
+from coursework.system.visible import one_line
+
+if TYPE_CHECKING:
+    from coursework.course.course import Course
+    from coursework.gradebook.after import Exam, Preview
+    from coursework.gradebook.decision import Decision
+    from coursework.issuing.assignment import Assignment
+
+_NAMED = 12  #: students named on a line
+_CHANGES = 200  #: changed marks in a table
+_PLACE = re.compile(r"(?P<place>[^=/]*(?:/[^=/:]*)?)=(?P<value>.+)", re.DOTALL)
+
+Confirm = Callable[[Sequence["Decision"], bool], None]
+
+
+def _several(name: str, metavar: str, **more: Any) -> Callable[[Any], Any]:
+    return click.option(name, multiple=True, metavar=metavar, **more)
+
+
+@click.command()
+@click.argument("file", type=FilePath(path_type=Path, dir_okay=False, exists=True), metavar="FILE.toml")
+@click.option(
+    "--issued",
+    type=FilePath(path_type=Path, dir_okay=False),
+    help="The issued.json of the build; by default in the folder that FILE names, or that is named like it.",
+)
+@click.option(
+    "--marks",
+    type=FilePath(path_type=Path, file_okay=False),
+    help="Folder of marks that grade wrote; by default marks/ beside issued.json.",
+)
+@db_option
+@assignment_option
+@_several("--weight", "QUESTION=POINTS", help="Give a question, such as 2.3, other points.")
+@_several("--neutralise", "QUESTION", help="Let a question count for nobody.")
+@_several("--spare", "QUESTION", help="Let a question count only for those whose mark it does not lower.")
+@_several("--bonus", "QUESTION", help="Add a question's points without counting it in the total.")
+@_several("--accept", "QUESTION=ANSWER", help="Accept an answer, whoever wrote it.")
+@_several("--refuse", "QUESTION=ANSWER", help="Give no points to an answer that waits, whoever wrote it.")
+@_several("--tolerance", "QUESTION=FACTOR", help="Widen the accepted margin of a question: 2 doubles it.")
+@_several(
+    "--price",
+    "[QUESTION/]VERDICT=SHARE",
+    help="Change the share of the points that a verdict leaves: slip:sign=0.75.",
+)
+@click.option("--full", type=float, metavar="POINTS", help="Points that are worth the best mark.")
+@click.option("--curve", metavar="POINTS:MARK…", help='Scale by points: "0:0 16:10 32:20".')
+@click.option("--step", "rounding", type=float, help="Step to which marks are rounded.")
+@click.option(
+    "--restated", is_flag=True, help="Apply the weights that FILE states now, changed after issuing."
+)
+@click.option(
+    "--put-away", is_flag=True, help="Put away the waiting answers that say nothing, without points."
+)
+@click.option("--cards", is_flag=True, help="List the answers that wait, question by question.")
+@click.option(
+    "--undo",
+    is_flag=True,
+    help="Take the last of these decisions back; with --put-away what was put away.",
+)
+@click.option("--why", default="", help="Reason, kept with the decision.")
+@click.option("--by", default="", help="Who decides; by default the account that runs the command.")
+@click.option("--yes", is_flag=True, help="Confirm what is previewed.")
+@click.option("--feedback", is_flag=True, help="Write the feedback sheets again, which takes a while.")
+@json_option
+@click.pass_context
+def after(
+    context: click.Context,
+    /,
+    file: Path,
+    issued: Path | None,
+    marks: Path | None,
+    db: str | None,
+    assignment: str,
+    undo: bool,
+    put_away: bool,
+    cards: bool,
+    restated: bool,
+    why: str,
+    by: str,
+    yes: bool,
+    feedback: bool,
+    as_json: bool,
+    **asked: Any,
+) -> int:
+    """Show what is left before the marks of an exam may go out, and change what its questions count.
+
+    Without a change it lists the waiting answers, patterns that a person should look at, and every question with a proposal. A
+    change is previewed: who goes from which mark to which. --yes confirms it: it is a dated line of decisions.csv, or of the database,
+    that every later grade applies, and --undo takes it back.
+    """
+    from coursework.gradebook.after import restated as restated_of
+    from coursework.gradebook.after import undoing
+    from coursework.issuing.assignment import read_assignment
+
+    course = opened(context)
+    stated = read_assignment(file, course)
+    exam, confirm = (
+        _stored(context, course, db, assignment or stated.name)
+        if db is not None
+        else _in_folder(context, course, file, stated, issued, marks)
+    )
+    by = by or getpass.getuser()
+    changed = restated_of(stated, exam)
+    steps = [step._replace(reason=why, by=by) for step in _steps(exam, asked)]
+    if restated:
+        texts = words(language_of_messages())["after"]
+        steps += [step._replace(reason=why or texts["file_why"], by=by) for step in changed.steps]
+    if put_away and undo:
+        steps += exam.taken_back(by, [words(lang)["after"]["put_away_why"] for lang in languages()])
+    elif put_away:
+        steps += exam.put_away(by, why or words(language_of_messages())["after"]["put_away_why"])
+    elif undo:
+        standing = exam.decisions.standing_steps
+        if not standing:
+            raise BadInput("nothing is decided that could be undone")
+        steps.append(undoing(standing[-1], by, why))
+    if put_away and not steps:
+        say("no answer that waits says nothing")
+        return DONE
+    if not steps:
+        if feedback:
+            confirm([], True)
+        if as_json:
+            print_json(_as_json(exam))
+        elif cards:
+            _tell_cards(exam)
+        else:
+            _tell(exam, changed.steps, changed.notes)
+        return FOUND if exam.cards or exam.rejected or changed.steps else DONE
+    preview = exam.preview(steps)
+    if as_json:
+        print_json(_preview_json(preview))
+    else:
+        _tell_preview(exam, steps, preview)
+    if yes or (not as_json and sys.stdin.isatty() and click.confirm(localised(Message("Confirm?")))):
+        confirm(steps, feedback)
+        say("{decisions} kept; --undo takes the last one back", decisions=counted(len(steps), "decision"))
+    elif not as_json:
+        say("nothing is written: --yes confirms it")
+    return DONE
+
+
+# ------------------------------------------------------------------------ where
+
+
+def _in_folder(
+    context: click.Context,
+    course: Course,
+    file: Path,
+    stated: Assignment,
+    issued: Path | None,
+    marks: Path | None,
+) -> tuple[Exam, Confirm]:
+    """Return the exam in a folder of marks, and what keeps decisions on it."""
+    from coursework.gradebook.after_files import MarkedFolder
+
+    if issued is None:
+        out = stated.options.get("out")
+        places = [file.parent / str(out)] if out else [file.with_suffix(""), Path(file.stem)]
+        found = [place / "issued.json" for place in places if (place / "issued.json").is_file()]
+        if not found:
+            raise BadInput(
+                "no issued.json in {places}: name that of the build, --issued",
+                places=", ".join(map(str, dict.fromkeys(places))),
+            )
+        issued = found[0]
+    folder = MarkedFolder(course, issued, marks or issued.parent / "marks")
+
+    def confirm(steps: Sequence[Decision], feedback: bool) -> None:
+        writes(context, folder.folder)
+        with progress_bar("writing", None) as advance:
+            book = folder.write(steps, feedback=feedback, progress=advance)
+        for warning in book.warnings:
+            warn("note: {note}", note=one_line(localised(warning)))
+        if not feedback and (folder.folder / "feedback").is_dir():
+            say("the feedback sheets are those of before: --feedback writes them again, once at the end")
+
+    return folder.exam, confirm
+
+
+def _stored(context: click.Context, course: Course, url: str, name: str) -> tuple[Exam, Confirm]:
+    """Return the exam in a database, and what keeps decisions on it."""
+    from coursework.cli.database import store_at
+
+    store = store_at(context, url)
+    from coursework.database.after import stored_exam
+    from coursework.database.assignments import assignment_called
+    from coursework.database.decisions import decide
+
+    with store.reading() as connection:
+        number = assignment_called(connection, name)
+
+    def confirm(steps: Sequence[Decision], feedback: bool) -> None:
+        with store.begin() as connection:
+            decide(connection, number, steps)
+
+    return stored_exam(course, store, number), confirm
+
+
+# ------------------------------------------------------------------------ steps
+
+
+def _steps(exam: Exam, asked: Mapping[str, Any]) -> Iterator[Decision]:
+    """Yield the steps that the options ask for."""
+    from coursework.gradebook import adjustments as kinds
+    from coursework.gradebook.after import step
+    from coursework.gradebook.decisions import ACCEPTED, GIVEN
+
+    for option, kind in (("weight", kinds.WEIGHT), ("tolerance", kinds.TOLERANCE)):
+        for text in asked[option]:
+            place, value = _split(option, text)
+            yield step(kind, *question_called(exam, place), points=_value(option, value))
+    for option, kind in (("neutralise", kinds.NEUTRAL), ("spare", kinds.SPARED), ("bonus", kinds.BONUS)):
+        for place in asked[option]:
+            yield step(kind, *question_called(exam, place))
+    for option, kind, points in (("accept", ACCEPTED, None), ("refuse", GIVEN, 0.0)):
+        for text in asked[option]:
+            place, answer = _split(option, text)
+            yield step(kind, *question_called(exam, place), points=points, answer=answer)
+    for text in asked["price"]:
+        verdict, value = _split("price", text)
+        place, _, verdict = verdict.rpartition("/")
+        question = question_called(exam, place) if place else ("", "")
+        yield step(kinds.PRICE, *question, points=_value("price", value), answer=verdict)
+    for option, kind in (("full", kinds.FULL), ("rounding", kinds.STEP)):
+        if asked[option] is not None:
+            yield step(kind, points=asked[option])
+    if asked["curve"]:
+        yield step(kinds.CURVE, answer=asked["curve"])
+
+
+def _split(option: str, text: str) -> tuple[str, str]:
+    match = _PLACE.fullmatch(text)
+    if match is None:
+        raise BadInput(
+            "--{option} takes a place and a value with = between; found {found!r}", option=option, found=text
+        )
+    return match["place"].strip(), match["value"].strip()
+
+
+def _value(option: str, text: str) -> float:
+    from coursework.language.numbers import typed_number
+
+    value = typed_number(text)
+    if value != value:
+        raise BadInput("--{option} takes a number; found {found!r}", option=option, found=text[:40])
+    return value
+
+
+def question_called(exam: Exam, name: str) -> tuple[str, str]:
+    """Return the question of a number on the papers, ``2.3``, or of ``exercise/part``.
+
+    Raises
+    ------
+    BadInput
+        There is none.
+    """
+    numbers = {exam.number(*question): question for question in exam.questions}
+    exercise, _, part = name.partition("/")
+    if (exercise, part) in exam.questions:
+        return exercise, part
+    if name.strip() not in numbers:
+        raise BadInput(
+            "no question {name!r}: the papers have {first} to {last}",
+            name=name[:40],
+            first=next(iter(numbers), ""),
+            last=next(reversed(numbers), ""),
+        )
+    return numbers[name.strip()]
+
+
+# ------------------------------------------------------------------------ lines
+
+
+def _named(names: Sequence[str]) -> str:
+    return ", ".join(names[:_NAMED]) + (f", … ({len(names)})" if len(names) > _NAMED else "")
+
+
+def _tell(exam: Exam, restated: Sequence[Decision], notes: Sequence[Message]) -> None:
+    """Print what is left, the questions, and the steps."""
+    from coursework.gradebook import after_words as said
+
+    lang = language_of_messages()
+    texts, colon = words(lang)["after"], words(lang)["sheet"]["colon"]
+    now = exam.distribution()
+    present, names = len(now.marks), exam.issued.students or tuple(now.marks)
+    click.echo(texts["handed_in"].format(len(names), present, len(exam.provisional)))
+    click.echo(
+        texts["marks"].format(said.number(now.mean, lang), said.number(now.of, lang), now.passed, present)
+    )
+    counts = zip(said.bins(now, lang), now.counts, strict=True)
+    print_table([{texts["mark"]: name, texts["students"]: count} for name, count in counts])
+    click.echo(f"\n{texts['left']}")
+    for why, (cards, answers) in exam.cards.items():
+        click.echo("  " + texts["cards"].format(texts["cards_by"][why], cards, answers))
+    if exam.cards:
+        click.echo(f"  {texts['list_them']}{colon} --cards")
+    if exam.non_answers:
+        click.echo("  " + texts["silent"].format(len(exam.non_answers)) + " --put-away")
+    if exam.rejected:
+        click.echo("  " + texts["rejected"].format(len(exam.rejected)))
+    if not exam.cards and not exam.rejected:
+        click.echo("  " + texts["nothing_left"])
+    if exam.provisional:
+        click.echo(f"  {texts['provisional']}{colon} {_named(list(exam.provisional))}")
+    if exam.patterns:
+        click.echo(f"\n{texts['seen']}")
+    for pattern in exam.patterns:
+        shown = [f"{student} ({place})" for student, place in pattern.sheets]
+        click.echo(f"  {texts['patterns'][pattern.kind]}{colon} {one_line(_named(shown))}")
+    click.echo("")
+    print_table([_question_row(question, texts, lang) for question in exam.table], texts["table"])
+    if restated or notes:
+        click.echo(f"\n{texts['file_says']}")
+    for step in restated:
+        click.echo(f"  {said.step_text(exam, step, lang)}")
+    for note in notes:
+        click.echo(f"  {localised(note)}")
+    if restated:
+        click.echo(f"  {texts['apply_file']}{colon} --restated")
+    click.echo(f"\n{texts['steps']}")
+    for step in exam.decisions.standing_steps:
+        click.echo("  " + one_line(step_line(exam, step, lang)))
+    if not exam.decisions.standing_steps:
+        click.echo("  " + texts["no_steps"])
+
+
+def _tell_cards(exam: Exam) -> None:
+    """Print the groups of equal answers that wait."""
+    texts = words(language_of_messages())["after"]
+    print_table(
+        [
+            {
+                texts["number"]: exam.number(group.exercise, group.part),
+                texts["look"]: texts["cards_by"][group.why],
+                texts["answer"]: one_line(members[0].mark.answer)[:60],
+                texts["answers"]: len(members),
+                texts["students"]: one_line(_named([one.student for one in members][:3])),
+            }
+            for group, members in exam.open
+        ]
+    )
+
+
+def step_line(exam: Exam, step: Decision, lang: str) -> str:
+    """Return a line on a step: the day, who, what, and why."""
+    from coursework.gradebook import after_words as said
+
+    day = step.made.astimezone().date().isoformat() if step.made else "–"
+    line = str(words(lang)["after"]["step_line"]).format(day, step.by, said.step_text(exam, step, lang))
+    return f"{line} ({step.reason})" if step.reason else line
+
+
+def _question_row(question: Any, texts: Any, lang: str) -> dict[str, Any]:
+    from coursework.gradebook import after_words as said
+    from coursework.language.numbers import localise
+
+    measured, flags = question.statistics, {"neutral": "--neutralise", "neutral_if_hurt": "--spare"}
+    discrimination = measured and measured.discrimination
+    proposal = ""
+    if question.proposal is not None:
+        answer = question.proposal.answer
+        proposal = (
+            f"--accept {question.number}={answer!r}"
+            if answer
+            else f"{flags[question.proposal.kind]} {question.number}"
+        )
+    return {
+        texts["number"]: question.number,
+        texts["question"]: question.part,
+        texts["points"]: said.points_text(question, lang),
+        texts["answers"]: str(measured.answers if measured else 0),
+        texts["mean"]: f"{100 * measured.mean:.0f} %" if measured else "",
+        texts["discrimination"]: "" if discrimination is None else localise(f"{discrimination:.2f}", lang),
+        texts["counts"]: said.counting_text(question, lang),
+        texts["look"]: texts["whys"][question.why] if question.why else "",
+        texts["proposal"]: one_line(proposal),
+    }
+
+
+def _tell_preview(exam: Exam, steps: Sequence[Decision], preview: Preview) -> None:
+    """Print who goes from which mark to which, and the new mean and distribution."""
+    from coursework.gradebook import after_words as said
+
+    lang = language_of_messages()
+    texts, colon = words(lang)["after"], words(lang)["sheet"]["colon"]
+    own = [step for step in steps if step.student]
+    for step in steps:
+        if not step.student:
+            click.echo(one_line(said.step_text(exam, step, lang)))
+    if own:
+        click.echo(f"{texts['put_away']}{colon} {_named([f'{one.student} ({one.answer})' for one in own])}")
+    changes = preview.changes
+    print_table(
+        [
+            {
+                texts["students"]: change.student,
+                texts["before"]: said.number(change.before, lang),
+                texts["now"]: said.number(change.now, lang),
+            }
+            for change in changes[:_CHANGES]
+        ]
+    )
+    if not changes:
+        click.echo(texts["nobody_moves"])
+    rows = zip(said.bins(preview.now, lang), preview.before.counts, preview.now.counts, strict=True)
+    print_table([{texts["mark"]: n, texts["before"]: b, texts["now"]: a} for n, b, a in rows])
+    still = len(preview.now.marks) - len(changes)
+    click.echo(texts["moves"].format(preview.rise, preview.fall, still))
+    means = (said.number(one.mean, lang) for one in (preview.before, preview.now))
+    click.echo(texts["means"].format(*means, said.number(preview.now.of, lang)))
+    click.echo(texts["pass_line"].format(preview.before.passed, preview.now.passed))
+
+
+def _as_json(exam: Exam) -> dict[str, Any]:
+    now = exam.distribution()
+    return {
+        "cards": {why: list(counts) for why, counts in exam.cards.items()},
+        "non_answers": len(exam.non_answers),
+        "rejected": len(exam.rejected),
+        "provisional": exam.provisional,
+        "patterns": {pattern.kind: [list(sheet) for sheet in pattern.sheets] for pattern in exam.patterns},
+        "questions": [
+            {
+                "number": q.number,
+                "exercise": q.exercise,
+                "part": q.part,
+                "points": q.weight,
+                "status": q.status,
+                "tolerance": q.tolerance,
+                "mean": q.statistics and round(q.statistics.mean, 4),
+                "discrimination": q.statistics and q.statistics.discrimination,
+                "why": q.why,
+                "proposal": q.proposal and q.proposal.kind,
+            }
+            for q in exam.table
+        ],
+        "mean": round(now.mean, 4),
+        "out_of": now.of,
+        "distribution": now.counts,
+    }
+
+
+def _preview_json(preview: Preview) -> dict[str, Any]:
+    return {
+        "changes": [change._asdict() for change in preview.changes],
+        "mean": [round(preview.before.mean, 4), round(preview.now.mean, 4)],
+        "distribution": [preview.before.counts, preview.now.counts],
+    }

@@ -1,0 +1,54 @@
+"""Words of the evening after an exam: a step, a question and a distribution as lines in the reader's language."""
+
+from __future__ import annotations
+
+from coursework.gradebook.adjustments import PRICE
+from coursework.gradebook.after import Distribution, Exam, ExamQuestion
+from coursework.gradebook.decisions import WITHDRAWN, Decision
+from coursework.language.numbers import localise
+from coursework.language.words import words
+
+
+def number(value: float, lang: str, digits: int = 4) -> str:
+    """Return a number as it is printed, of at most so many digits."""
+    return localise(f"{value:.{digits}g}", lang)
+
+
+def step_text(exam: Exam, step: Decision, lang: str) -> str:
+    """Return what a step does."""
+    texts = words(lang)["after"]
+    if step.kind == WITHDRAWN:
+        return str(texts["undone"]).format(_place(exam, step, lang))
+    points = (step.points or 0.0) * (100 if step.kind == PRICE else 1)
+    return str(texts["kinds"][step.kind]).format(
+        question=_place(exam, step, lang), points=number(points, lang, 6), answer=step.answer or ""
+    )
+
+
+def _place(exam: Exam, step: Decision, lang: str) -> str:
+    if (step.exercise, step.part) in exam.questions:
+        return exam.number(step.exercise, step.part)
+    return step.exercise or str(words(lang)["after"]["kinds"]["everywhere"])
+
+
+def counting_text(question: ExamQuestion, lang: str) -> str:
+    """Return how a question counts: as issued, or what is changed."""
+    texts = words(lang)["after"]
+    pieces = [str(texts["statuses"][question.status])] if question.status else []
+    if question.tolerance != 1:
+        pieces.append(str(texts["wider"]).format(number(question.tolerance, lang)))
+    return ", ".join(pieces)
+
+
+def points_text(question: ExamQuestion, lang: str) -> str:
+    """Return the points of a question, with those announced where they differ."""
+    now, before = number(question.weight, lang), number(question.issued, lang)
+    return now if now == before else str(words(lang)["after"]["was"]).format(now, before)
+
+
+def bins(distribution: Distribution, lang: str) -> list[str]:
+    """Return the names of the tenths of a scale: ``0–2``."""
+    width = distribution.of / len(distribution.counts)
+    return [
+        f"{number(k * width, lang)}–{number((k + 1) * width, lang)}" for k in range(len(distribution.counts))
+    ]

@@ -1,0 +1,106 @@
+"""The evening after an exam from a folder of marks: what is left, a change with its preview, confirmed and undone."""
+
+import json
+
+import pytest
+from small_assignment import grade, issue, item, right, table
+
+import coursework
+from coursework.cli import run
+from coursework.gradebook.after import is_non_answer
+
+NAMES = [f"S{k:02}" for k in range(12)]
+
+
+@pytest.fixture
+def marked(small_course, tmp_path):
+    """Twelve students, of whom the six best answer v wrongly and the others rightly; and two answers that wait."""
+    course = coursework.open_course(small_course)
+    papers = issue(tmp_path, [item(course, name, 5) for name in NAMES])
+    rows = []
+    for k, name in enumerate(NAMES):
+        wrong = {"v": 77.7} if k < 6 else {"x": 77.7 + k, "y": 99.9 + k} if k < 10 else {"x": "hm 3 or 4"}
+        rows += right(course, name, 5, **wrong)
+    rows += [["Nobody", "crank_pin", 5, "v", "1"]]
+    grade(course, papers, rows)
+    (tmp_path / "week3.toml").write_text(
+        'mark = { of = 20, step = 0.5 }\nout = "."\n[[exercises]]\nname = "crank_pin"\npoints = { x = 3 }\n'
+    )
+
+    def after(*options):
+        asked = [
+            "--course",
+            course.folder.root,
+            "after",
+            tmp_path / "week3.toml",
+            *options,
+            "--by",
+            "Mme Roy",
+        ]
+        return run(list(map(str, asked)))
+
+    return tmp_path / "marks", after
+
+
+def said_by(capsys, after, *options):
+    capsys.readouterr()
+    after(*options, "--json")
+    return json.loads(capsys.readouterr().out)
+
+
+def marks_in(folder):
+    return [row["mark"] for row in table(folder / "summary.csv")]
+
+
+def test_what_is_left_is_told_with_the_proposal_that_fits(marked, capsys, monkeypatch):
+    _, after = marked
+    state = said_by(capsys, after)
+    assert (state["cards"]["unreadable"], state["rejected"]) == ([1, 2], 1)
+    assert state["provisional"] == {"S10": 1, "S11": 1}
+    (v,) = (one for one in state["questions"] if one["part"] == "v")
+    assert (v["why"], v["proposal"]) == ("reversed", "neutral_if_hurt")
+    monkeypatch.setenv("LC_ALL", "fr_FR.UTF-8")
+    assert after() == 1
+    text = capsys.readouterr().out
+    assert "Illisibles" in text
+    assert "les meilleurs la manquent" in text
+    assert "3 points" in text
+
+
+def test_a_change_is_previewed_confirmed_applied_by_grade_and_undone(marked, capsys):
+    folder, after = marked
+    before = marks_in(folder)
+    number = next(q["number"] for q in said_by(capsys, after)["questions"] if q["part"] == "v")
+    preview = said_by(capsys, after, "--neutralise", number)
+    assert marks_in(folder) == before
+    assert not (folder / "decisions.csv").exists()
+    assert {c["student"]: c["now"] for c in preview["changes"]}["S00"] == 20
+    assert after("--neutralise", number, "--why", "misprint", "--yes") == 0
+    assert marks_in(folder)[:7] == ["20"] * 6 + ["0"]
+    (line,) = table(folder / "decisions.csv")
+    assert (line["kind"], line["reason"], line["by"], len(line["date"])) == (
+        "neutral",
+        "misprint",
+        "Mme Roy",
+        10,
+    )
+    assert {r["mark_now"] for r in table(folder / "changes.csv") if r["student"] == "S00"} == {"20"}
+    assert after("--undo", "--yes") == 0
+    assert marks_in(folder) == before
+    assert [row["kind"] for row in table(folder / "decisions.csv")] == ["neutral", "withdrawn"]
+
+
+def test_weights_changed_in_the_file_and_an_accepted_answer_count_when_confirmed(marked, capsys):
+    folder, after = marked
+    assert after("--restated", "--accept", "1.1=hm 3 or 4", "--yes") == 0
+    assert {row["out_of"] for row in table(folder / "summary.csv")} == {"6"}
+    assert "provisional" not in table(folder / "summary.csv")[0]
+    capsys.readouterr()
+    after()
+    assert "--restated" not in capsys.readouterr().out
+
+
+def test_a_non_answer_says_no_number_and_refers_nowhere():
+    said = {"hm": True, "no time": True, "…": True, "3 or 4": False, "see sheet": False, "π": False}
+    assert {text: is_non_answer(text, is_number=True) for text in said} == said
+    assert not is_non_answer("crank", is_number=False)
