@@ -21,6 +21,7 @@ from coursework.authoring.scaffold import new_course
 from coursework.course.secrecy import Secret
 
 MEMORY = Path("/dev/shm")  #: files that are in memory, where a system has such a place
+_PREFIX = "coursework-tests-"  #: of their names, before the process that writes
 ROOM = 6 << 30  #: bytes that must be free there, and of memory
 _PLACE = pytest.StashKey[str]()
 
@@ -109,11 +110,23 @@ def pytest_configure(config):
     found = re.search(r"^MemAvailable: *(\d+) kB$", told, re.MULTILINE)
     if not found or min(int(found[1]) * 1024, shutil.disk_usage(MEMORY).free) < ROOM:
         return
-    place = tempfile.mkdtemp(prefix="coursework-tests-", dir=MEMORY)
+    _forget_ended_runs()
+    place = tempfile.mkdtemp(prefix=f"{_PREFIX}{os.getpid()}-", dir=MEMORY)
     Path(place).chmod(0o711)  # a database's server may be another account's
     os.environ["TMPDIR"] = tempfile.tempdir = place
     config.add_cleanup(lambda: os.environ.pop("TMPDIR", None))
     config.stash[_PLACE] = place
+
+
+def _forget_ended_runs():
+    """Remove what runs that failed or were killed left in memory, but for the last of them, which somebody may look at."""
+    left = []
+    for place in MEMORY.glob(f"{_PREFIX}*-*"):
+        process = place.name.removeprefix(_PREFIX).partition("-")[0]
+        if process.isdigit() and not Path("/proc", process).exists():
+            left.append((place.stat().st_mtime, place))
+    for _, place in sorted(left)[:-1]:
+        shutil.rmtree(place, ignore_errors=True)
 
 
 @pytest.hookimpl(trylast=True)
