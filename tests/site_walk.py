@@ -191,7 +191,7 @@ def fillings(site: Filled) -> dict[str, Filling]:
     )
     anybodys = (
         "/", "/service-worker.js", "/offline", "/accessibility", "/language", "/who", "/sign-in", "/sign-out", "/account", "/account/data", "/practice", "/progress",
-        "/progress/progress.json", "/assignments", "/desk", "/desk/issued", "/desk/people", "/desk/people/add", "/desk/people/add-staff", "/desk/audit",
+        "/progress/progress.json", "/assignments", "/desk", "/desk/issued", "/desk/people", "/desk/people/extra-time", "/desk/people/add", "/desk/people/add-staff", "/desk/audit",
         "/desk/receipts", "/desk/lti", "/mechanisms", "/desk/assignments", "/desk/assignments/new",
     )  # fmt: skip
     of_class = (
@@ -221,7 +221,7 @@ def fillings(site: Filled) -> dict[str, Filling]:
         },
         **{
             f"/assignments/{{number:int}}{end}": paper
-            for end in ("", "/keep", "/read-back", "/hand-in", "/file", "/feedback")
+            for end in ("", "/start", "/keep", "/read-back", "/hand-in", "/file", "/feedback")
         },
         "/assignments/{number:int}/receipts/{code}": Filling(*code),
         "/assignments/{number:int}/receipts/{code}.{ending}": Filling(*code),

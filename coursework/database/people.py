@@ -9,7 +9,9 @@ from typing import Any
 from sqlalchemy import Connection, Select, insert, select, update
 
 from coursework.database.tables import account, person
-from coursework.errors import bare_letters
+from coursework.errors import BadInput, bare_letters
+from coursework.issuing.exam_columns import cell, extra_time_of
+from coursework.issuing.identity import EXTRA_TIME
 from coursework.issuing.roster import Student
 
 
@@ -48,9 +50,11 @@ def put_person(
     """Add or update the person of a roster; return the id. A name, a language and columns replace those
     before, unless they are empty."""
     row_before = person_by_identifier(connection, identifier)
-    values = {
+    values: dict[str, Any] = {
         key: value for key, value in (("name", name), ("lang", lang), ("columns", dict(columns))) if value
     }
+    if row_before is not None:
+        values |= _changed_extra_time(row_before.columns, columns)
     if row_before is None:
         row = {
             "who": identifier,
@@ -58,6 +62,7 @@ def put_person(
             "lang": lang,
             "columns": dict(columns),
             "created": datetime.now(UTC),
+            **_stated_extra_time(columns),
         }
         return int(connection.execute(insert(person).values(row).returning(person.c.id)).scalar_one())
     if any(getattr(row_before, key) != value for key, value in values.items()):
@@ -65,11 +70,36 @@ def put_person(
     return int(row_before.id)
 
 
+def _stated_extra_time(columns: Mapping[str, str]) -> dict[str, float | None]:
+    """Return the extra time that a roster states, as values of a row; none for an empty cell, which leaves it as it was."""
+    if not cell(columns, EXTRA_TIME):
+        return {}
+    try:
+        return {"extra_time": float(extra_time_of(columns)) or None}
+    except BadInput:  # of a file from elsewhere; a roster is checked when it is read
+        return {}
+
+
+def _changed_extra_time(had: Mapping[str, str], columns: Mapping[str, str]) -> dict[str, float | None]:
+    """Return the extra time that a roster states otherwise than the one before; one that was set by hand meanwhile
+    stays."""
+    stated = _stated_extra_time(columns)
+    return stated if stated != _stated_extra_time(had) else {}
+
+
+def set_extra_time(connection: Connection, numbers: Sequence[int], share: float) -> None:
+    """Set the share by which the working times of people are longer; 0 for none."""
+    connection.execute(update(person).where(person.c.id.in_(numbers)).values(extra_time=share or None))
+
+
 def put_people(connection: Connection, students: Sequence[Student]) -> dict[str, int]:
     """Add the new people of a roster, and new columns of known ones; return the ids of all people by the
     roster's identifier."""
     people_before = {
-        row.who: row for row in connection.execute(select(person.c.who, person.c.id, person.c.columns))
+        row.who: row
+        for row in connection.execute(
+            select(person.c.who, person.c.id, person.c.columns, person.c.extra_time)
+        )
     }
     now = datetime.now(UTC)
     new = {student.draw_key: student for student in students if student.draw_key not in people_before}
@@ -80,6 +110,7 @@ def put_people(connection: Connection, students: Sequence[Student]) -> dict[str,
             "lang": student.lang,
             "columns": dict(student.columns),
             "created": now,
+            **{"extra_time": None, **_stated_extra_time(student.columns)},
         }
         for identifier, student in new.items()
     ]
@@ -87,8 +118,14 @@ def put_people(connection: Connection, students: Sequence[Student]) -> dict[str,
         connection.execute(insert(person), rows)
     for student in students:
         had = people_before.get(student.draw_key)
-        if had is not None and (columns := {**had.columns, **student.columns}) != had.columns:
-            connection.execute(update(person).where(person.c.id == had.id).values(columns=columns))
+        if had is None:
+            continue
+        values = {
+            "columns": {**had.columns, **student.columns},
+            **_changed_extra_time(had.columns, student.columns),
+        }
+        if any(getattr(had, key) != value for key, value in values.items()):
+            connection.execute(update(person).where(person.c.id == had.id).values(values))
     return {row.who: row.id for row in connection.execute(select(person.c.who, person.c.id))}
 
 

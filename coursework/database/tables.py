@@ -107,6 +107,7 @@ person = Table(
     Column("name", SafeText, nullable=False),
     Column("lang", SafeText, nullable=False, default=""),
     Column("columns", Json, nullable=False, default=dict),  #: of the rosters that name them
+    Column("extra_time", Double),  #: share by which working times are longer; none for none
     Column("created", UTCDateTime, nullable=False),
     Column("sessions_from", UTCDateTime),  #: written by earlier versions, and read by none
 )
@@ -479,9 +480,23 @@ extension = Table(
     _of("person", index=True),
     Column("closes", UTCDateTime),
     Column("tries", Integer),
+    Column("minutes", Integer),  #: working time from the start of the paper
     Column("reason", SafeText, nullable=False, default=""),
     Column("by", SafeText, nullable=False),
     Column("made", UTCDateTime, nullable=False),
+)
+
+#: Start of a paper with a working time, which counts from then on; a make-up is another paper, and has its own.
+paper_start = Table(
+    "paper_start",
+    METADATA,
+    _key(),
+    _of("assignment"),
+    _of("person", index=True),
+    Column("sitting", Integer, nullable=False),
+    Column("started", UTCDateTime, nullable=False),
+    Column("ended", UTCDateTime, index=True),  #: time at which its end was recorded as passed
+    UniqueConstraint("assignment_id", "person_id", "sitting"),
 )
 
 #: Job of a background worker: a submission to mark, drafts to submit after the closing date, a page to prepare. The row is

@@ -35,7 +35,7 @@ from coursework.site.lessons import lessons_page
 from coursework.site.lti import connecting, links_page
 from coursework.site.mechanisms import mechanisms_page
 from coursework.site.papers import assignments
-from coursework.site.people import accounts, home, people_page, privacy, scrubbing
+from coursework.site.people import accounts, extra_time, home, people_page, privacy, scrubbing
 from coursework.site.practice import explore_page, practice_page, progress_page
 from coursework.site.publication import publishing
 from coursework.site.warming import begin_warming
@@ -49,6 +49,7 @@ ROUTES: tuple[Route, ...] = (
     *explore_page.ROUTES,
     *progress_page.ROUTES,
     *accounts.ROUTES,
+    *extra_time.ROUTES,
     *people_page.ROUTES,
     *privacy.ROUTES,
     *overview.ROUTES,

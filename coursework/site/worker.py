@@ -10,7 +10,7 @@ import logging
 import time
 from collections.abc import Callable
 from contextlib import suppress
-from datetime import UTC, datetime, timedelta
+from datetime import timedelta
 from functools import partial
 
 from sqlalchemy import select
@@ -32,8 +32,8 @@ from coursework.database.jobs import (
     waiting,
 )
 from coursework.database.marking import mark_submission
-from coursework.database.publication import Publication
-from coursework.database.tables import assignment, extension
+from coursework.database.publication import Publication, passing
+from coursework.database.tables import assignment
 from coursework.errors import CourseworkError
 from coursework.site.desk.class_table import computed_table
 from coursework.site.frame.lru_cache import LRUCache
@@ -49,7 +49,6 @@ _DATES = 1.0  #: seconds between two checks of the dates
 _COUNTS = 60.0  #: seconds between two counts of a class that changes all the time
 #: Marking waits for a short time without submissions, so as not to slow a rush, but not for long.
 _QUIET, _LONGEST = timedelta(seconds=0.5), timedelta(seconds=5)
-_LONG_AGO = datetime.min.replace(tzinfo=UTC)
 _VARIANTS = 100  #: items of the cache: students may share a variant
 _RECENT = timedelta(days=1)
 _PUBLISHED = select(assignment.c.id, assignment.c.published).where(assignment.c.published.is_not(None))
@@ -181,14 +180,12 @@ class Worker:
         now = self.site.clock()
         with self.site.store.reading() as connection:
             publications = {row.id: Publication.of(row.published) for row in connection.execute(_PUBLISHED)}
-            more: dict[int, list[datetime]] = {}
-            for row in connection.execute(select(extension.c.assignment_id, extension.c.closes)):
-                more.setdefault(row.assignment_id, []).extend([row.closes] if row.closes else [])
-        for number, publication in publications.items():
-            at = now - SETTLES if publication.takes_saved else now
-            since = publication.reached or _LONG_AGO
-            if any(since <= date < at for date in (*publication.dates(), *more.get(number, ()))):
-                close_passed(self.site, number, at, partial(self._later, number))
+            settling = [number for number, one in publications.items() if one.takes_saved]
+            others = [number for number in publications if number not in settling]
+            passed = [(number, now - SETTLES) for number in passing(connection, settling, now - SETTLES)]
+            passed += [(number, now) for number in passing(connection, others, now)]
+        for number, at in passed:
+            close_passed(self.site, number, at, partial(self._later, number))
 
     def _later(self, number: int, person: int, fault: Exception) -> None:
         """Queue another try to submit a person's saved answers; its failure is logged."""

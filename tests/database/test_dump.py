@@ -72,6 +72,7 @@ def full(store, small_course):
                 "version": 2,
                 "changed": AT + timedelta(hours=9),
             },
+            "paper_start": {**person, "assignment_id": number, "sitting": 1, "started": AT, "ended": None},
             "extension": {
                 **person,
                 "assignment_id": number,

@@ -41,7 +41,7 @@ WHO = {
     "/practice/{exercise}": (STUDENTS, STUDENTS), "/practice/{exercise}/{seed}/motion": (STUDENTS, None),
     "/explore/{exercise}": (STUDENTS, None),
     **{f"/practice/{{exercise}}/{{seed}}{end}": (STUDENTS, STUDENTS) for end in ("", "/draft", "/read", "/solution")},
-    **{f"/assignments/{{number:int}}{end}": (STUDENTS, STUDENTS) for end in ("", "/keep", "/hand-in", "/file")},
+    **{f"/assignments/{{number:int}}{end}": (STUDENTS, STUDENTS) for end in ("", "/start", "/keep", "/hand-in", "/file")},
     **{
         f"/assignments/{{number:int}}{end}": (STUDENTS, None)
         for end in ("/read-back", "/feedback", "/receipts/{code}", "/receipts/{code}.{ending}", "/{file}")
@@ -71,7 +71,7 @@ WHO = {
         f"/desk/assignments/{{number:int}}{end}": (INSTRUCTORS, INSTRUCTORS)
         for end in ("/publish", "/unpublish", "/extend", "/roster", "/make-up", "/sheets")
     },
-    "/desk/people": (INSTRUCTORS, INSTRUCTORS), "/desk/people/add": (INSTRUCTORS, INSTRUCTORS),
+    **dict.fromkeys(("/desk/people", "/desk/people/add", "/desk/people/extra-time"), (INSTRUCTORS, INSTRUCTORS)),
     "/desk/people/{person}": (INSTRUCTORS, None), "/desk/people/{person}/invitation": (INSTRUCTORS, INSTRUCTORS),
     "/desk/people/{person}/separate": (INSTRUCTORS, INSTRUCTORS), "/connect/{token}": (STUDENTS, STUDENTS),
     **{f"/desk/people{end}": (ADMINISTRATORS, ADMINISTRATORS) for end in ("/add-staff", "/{person}/role", "/{person}/erase")},

@@ -22,7 +22,7 @@ from coursework.database.class_state import ClassState
 from coursework.database.current_marks import last_markings, lines_of, machine_marks
 from coursework.database.decisions import read_decisions
 from coursework.database.instructor_queries import stamp
-from coursework.database.publication import extensions, last_end, published, student_assignments
+from coursework.database.publication import last_end, longer_for, published, student_assignments
 from coursework.database.settings import put_value, value_of
 from coursework.database.submissions import submissions_of
 from coursework.errors import CourseworkError
@@ -112,7 +112,8 @@ def assignment_state(
     assignment = next(iter(student_assignments(connection, person, number)), None)
     if assignment is None or assignment.publication is None:
         return None
-    ends = last_end(assignment.publication, list(extensions(connection, number).values()))
+    longer = longer_for(connection, {number: assignment.publication})[number]
+    ends = last_end(assignment.publication, longer.values())
     return AssignmentState(
         assignment, lang, assignment.publication.now(at), submissions_of(connection, number, person), ends
     )
@@ -167,12 +168,13 @@ class ScoreWatch:
     def _state_text(self, number: int) -> str:
         """Return a text that changes whenever a score may have changed."""
         with self._site.store.reading() as connection:
-            publication, more = published(connection, number), extensions(connection, number)
-            stamped = stamp(connection, number)
+            publication, stamped = published(connection, number), stamp(connection, number)
+            more = longer_for(connection, {number: publication})[number] if publication else {}
         if publication is None:
             return str(stamped)
         passed = sum(
-            date < publication.now(self._site.clock()) for date in publication.dates(list(more.values()))
+            date < publication.now(self._site.clock())
+            for date in publication.dates(own.closes for own in more.values())
         )
         rules = replace(publication, reached=None).as_json()
         return f"{stamped} {passed} {sorted(rules.items())} {len(more)}"

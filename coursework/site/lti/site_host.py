@@ -43,10 +43,11 @@ from coursework.site.lti.launch_request import LTIRequest
 from coursework.site.lti.linked_assignment import LinkedAssignment, follow_link, linked_assignment
 from coursework.site.lti.pages import LTIPages, SheetForm
 from coursework.site.lti.scores import score_of
-from coursework.site.papers.assignment_state import AssignmentState, state_and_paper
+from coursework.site.papers.assignment_state import AssignmentState, NotStarted, state_and_paper
 from coursework.site.papers.assignments import feedback_from
 from coursework.site.papers.feedback import feedback_of
 from coursework.site.papers.receipts import pending_marking
+from coursework.site.papers.starting import record_start, start_names
 from coursework.site.papers.student_paper import StudentPaper, read_lines
 from coursework.site.papers.submission import mark, rows_for, sheet_of, submit
 from coursework.site.publication.publishing import definition_of, listed_assignments, preview_paper
@@ -109,7 +110,10 @@ class SiteHost:
 
     def _student_page(self, request: LTIRequest, linked: LinkedAssignment) -> Response:
         site_request = self._site_request(request, linked, FormData())
-        state, paper = state_and_paper(site_request)
+        try:
+            state, paper = state_and_paper(site_request)
+        except NotStarted as why:
+            return self._start_page(request, start_names(site_request, why.assignment))
         if state.done and not ("again" in request.query and state.may_hand_in):
             return self._after_submission(request, site_request, linked, state, paper)
         if not state.may_hand_in:
@@ -120,6 +124,17 @@ class SiteHost:
                 kept = drafts(connection, site_request.user.id, sheet_of(state.assignment, paper))
             texts |= {name: kept[name].text for name in paper.drawn if name in kept}
         return HTMLResponse(self._sheet(request, state, paper, texts))
+
+    def _start_page(self, request: LTIRequest, names: Mapping[str, Any]) -> Response:
+        """Return the page that starts the working time of a paper."""
+        texts = words(request.lang, "site")
+        more = {
+            "own": texts["assignments"],
+            "start_counts": texts["lti"]["start_counts"],
+            "token": request.csrf_token,
+        }
+        html = self.pages.page("platform/lti_start", request.lang, {**names, **more, "action": request.home})
+        return HTMLResponse(html)
 
     # ------------------------------------------------------------------- a student
 
@@ -269,6 +284,9 @@ class SiteHost:
     def _submit(self, request: LTIRequest, linked: LinkedAssignment, form: FormData) -> Response:
         """Submit the answers of a form; a repeated form has no effect."""
         site_request = self._site_request(request, linked, form)
+        if form.text("_start"):
+            record_start(site_request)
+            return RedirectResponse(request.home, 303)
         state, paper = state_and_paper(site_request)
         texts, attempt = paper.texts(site_request.form), _number(form)
         if attempt <= len(state.done):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from datetime import datetime
+from datetime import datetime, timedelta
 
 from markupsafe import Markup
 from sqlalchemy import Connection
@@ -12,17 +12,25 @@ from sqlalchemy import Connection
 from coursework.database.publication import (
     Phase,
     StudentAssignment,
-    extensions_by_assignment,
     last_end,
+    longer_for,
     student_assignments,
 )
 from coursework.database.submissions import Submission, attempts_used, submissions_by_assignment
 from coursework.issuing.assignment import text_in
 from coursework.language.numbers import localise, plain
 from coursework.site.frame.requests import HTTPException, Request
-from coursework.site.frame.times import length_text, moment_text, time_element
+from coursework.site.frame.times import exact_text, length_text, moment_text, time_element
 from coursework.site.papers.student_paper import StudentPaper, student_paper
 from coursework.site.papers.submission import pass_dates
+
+
+class NotStarted(HTTPException):
+    """Refusal of a paper whose working time the person has not started."""
+
+    def __init__(self, assignment: StudentAssignment):
+        super().__init__("not_started", 409)
+        self.assignment = assignment
 
 
 @dataclass(frozen=True)
@@ -64,6 +72,45 @@ class AssignmentState:
         ends = self.assignment.own_publication.ends, self.assignment.publication.ends
         return None if ends[0] is None or ends[1] is None else max(ends[0], ends[1])
 
+    @property
+    def must_start(self) -> bool:
+        """Return True if the paper opens only when the person starts its working time."""
+        return self.assignment.must_start(self.now)
+
+    @property
+    def allowed(self) -> str:
+        """Working time of this person as text; empty if there is none."""
+        minutes = self.assignment.own_publication.minutes
+        return "" if minutes is None else length_text(timedelta(minutes=minutes), self.lang)
+
+    @property
+    def has_extra_time(self) -> bool:
+        """Return True if the working time is longer than that of the class."""
+        assert self.assignment.publication is not None
+        return (self.assignment.own_publication.minutes or 0) > (self.assignment.publication.minutes or 0)
+
+    @property
+    def seconds_left(self) -> int | None:
+        """Remaining seconds of a working time that runs; None without one."""
+        rules = self.assignment.own_publication
+        if self.assignment.started is None or rules.minutes is None or rules.closes is None:
+            return None
+        return max(0, int((rules.closes - self.now).total_seconds())) if self.may_hand_in else None
+
+    @property
+    def ends_text(self) -> str:
+        """End of a working time that runs, with its seconds."""
+        closes = self.assignment.own_publication.closes
+        return "" if closes is None else exact_text(closes, self.lang)
+
+    @property
+    def allowed_now(self) -> timedelta:
+        """Time that the person has if the paper is started now: less than the working time near the closing
+        date."""
+        rules = self.assignment.own_publication
+        whole = timedelta(minutes=rules.minutes or 0)
+        return whole if rules.closes is None else min(whole, rules.closes - self.now)
+
     def releases(self, content: str) -> bool:
         """Return True if ``feedback`` or ``answers`` are released now."""
         ends = self.closed_for_both if content == "feedback" else self.everybody_ends
@@ -96,11 +143,12 @@ def _states(
 ) -> list[AssignmentState]:
     numbers, states = [assignment.id for assignment in assignments], []
     done = submissions_by_assignment(connection, numbers, person)
-    more, used = extensions_by_assignment(connection, numbers), attempts_used(connection, person, done)
+    publications = {one.id: one.publication for one in assignments if one.publication is not None}
+    longer, used = longer_for(connection, publications), attempts_used(connection, person, done)
     for assignment in assignments:
         assert assignment.publication is not None
         number, now = assignment.id, assignment.publication.counted(request.received_at, request.site.clock())
-        ends = last_end(assignment.publication, [*more.get(number, {}).values()])
+        ends = last_end(assignment.publication, longer[number].values())
         theirs = done.get(number, []), ends, used.get(number, 0)
         states.append(AssignmentState(assignment, request.lang, now, *theirs))
     return states
@@ -146,15 +194,15 @@ def assignment_and_paper(
     request: Request, connection: Connection, *, heads: bool = False
 ) -> tuple[StudentAssignment, StudentPaper]:
     """Return the assignment and the paper, with the data of its heading if ``heads``; refuse it before it
-    opens."""
+    opens, and before its working time was started."""
     site, assignment = request.site, user_assignment(request, connection)
     assert assignment.publication is not None
-    if (
-        assignment.own_publication.phase(assignment.publication.counted(request.received_at, site.clock()))
-        is Phase.TO_COME
-    ):
+    now = assignment.publication.counted(request.received_at, site.clock())
+    if assignment.own_publication.phase(now) is Phase.TO_COME:
         opens = assignment.own_publication.opens
         raise HTTPException("not_yet", 409, moment_text(opens, request.lang) if opens else "")
+    if assignment.must_start(now):
+        raise NotStarted(assignment)
     return assignment, student_paper(
         connection, site.course, assignment, request.user.id, request.lang, site.cache, heads=heads
     )

@@ -22,7 +22,7 @@ from coursework.gradebook.rows import AnswerRow
 from coursework.gradebook.submissions import read_rows
 from coursework.issuing.students import file_stems, folded
 from coursework.rendering.renderer import renderer_of
-from coursework.site.frame.budgets import ANSWER_FILE, BOXES, HAND_IN, MOST_ROWS
+from coursework.site.frame.budgets import ANSWER_FILE, BOXES, HAND_IN, MOST_ROWS, PLAIN
 from coursework.site.frame.drafts import draft_attributes, save_drafts, save_form_drafts, versions_of
 from coursework.site.frame.forms import read_upload
 from coursework.site.frame.requests import HTTPException, Request, Route, Upload
@@ -32,6 +32,7 @@ from coursework.site.lessons.lesson_content import linked_lessons
 from coursework.site.papers import receipts, submission
 from coursework.site.papers.assignment_state import (
     AssignmentState,
+    NotStarted,
     assignment_and_paper,
     published_states,
     state_and_paper,
@@ -40,6 +41,7 @@ from coursework.site.papers.assignment_state import (
 from coursework.site.papers.feedback import charged_text, drawings_in, feedback_of
 from coursework.site.papers.opening import filled_in, make_pieces
 from coursework.site.papers.receipts import pending_marking
+from coursework.site.papers.starting import record_start, start_names
 from coursework.site.papers.student_paper import StudentPaper, counts, read_lines
 from coursework.site.papers.submission import IN_A_FILE, ON_THE_PAGE, pass_dates, sheet_of
 
@@ -67,8 +69,13 @@ def list_page(request: Request) -> Response:
 
 
 def paper_page(request: Request) -> Response:
-    """Return the person's paper to fill in; a submitted form returns with its reading."""
-    state, paper = state_and_paper(request)
+    """Return the person's paper to fill in, or the page that starts it; a submitted form returns with its
+    reading."""
+    try:
+        state, paper = state_and_paper(request)
+    except NotStarted as why:
+        names = start_names(request, why.assignment)
+        return request.render("site/student/assignment_start", zone=zone_name(request.received_at), **names)
     if request.is_post:
         return _read_back(request, state, paper)
     if not state.may_hand_in and state.done:
@@ -79,6 +86,12 @@ def paper_page(request: Request) -> Response:
     if not state.may_hand_in:
         return page
     return opens_offline(page, None if closes is None else closes - state.now)
+
+
+def start_paper(request: Request) -> Response:
+    """Start the working time of a paper; a repeated form leads to the paper."""
+    record_start(request)
+    return redirect(f"/assignments/{request.path_params['number']}")
 
 
 def _paper_response(
@@ -363,6 +376,16 @@ ROUTES = (
         has_page=False,
         limit="paper",
         budget=BOXES,
+        is_short=True,
+    ),
+    Route(
+        "/assignments/{number:int}/start",
+        start_paper,
+        Permission.OWN,
+        takes_forms=True,
+        has_page=False,
+        limit="paper",
+        budget=PLAIN,
         is_short=True,
     ),
     Route("/assignments/{number:int}/read-back", read_back_page, Permission.OWN, limit="paper"),

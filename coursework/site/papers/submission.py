@@ -30,6 +30,7 @@ from coursework.database.publication import (
     passing,
     published,
     record_passed_date,
+    running,
     student_assignments,
 )
 from coursework.database.submissions import (
@@ -280,6 +281,10 @@ def close_passed(
         if publication is None or not passing(connection, [number], at):
             return
         wrote = unsubmitted_persons(connection, number) if publication.takes_saved else []
+        if publication.minutes is not None:  # each closes at another moment: only those that have
+            begun = running(connection, {number: publication})[number]
+            open_still = {paper.person for paper in begun if paper.end >= at}
+            wrote = [person_id for person_id in wrote if person_id not in open_still]
     for person_id in wrote:
         try:
             rescue(site, number, person_id, at)

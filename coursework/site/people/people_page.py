@@ -25,6 +25,7 @@ from coursework.site.frame.paging import page_of
 from coursework.site.frame.requests import HTTPException, Request, Route
 from coursework.site.frame.responses import Download, redirect
 from coursework.site.people.accounts import DAYS, as_login, invited
+from coursework.site.people.extra_time import extra_time_text
 from coursework.site.publication.new_assignment import uploaded_roster
 from coursework.system.tables import csv_file
 
@@ -40,6 +41,7 @@ class PersonRow(NamedTuple):
     role: str
     state: str  #: joined, invited, over (an expired invitation), none
     has_account: bool = False
+    extra_time: str = ""  #: share of extra time, as text
 
 
 class InvitationLink(NamedTuple):
@@ -83,13 +85,14 @@ def _lines(request: Request, connection: Connection) -> list[PersonRow]:
 
 
 def _line(request: Request, person: Any, account: Any) -> PersonRow:
+    extra_time = extra_time_text(person.extra_time, request.lang)
     if account is None:
-        return PersonRow(person.id, person.name, login_of(person), STUDENT, "none")
+        return PersonRow(person.id, person.name, login_of(person), STUDENT, "none", extra_time=extra_time)
     waits = account.invited_until is not None
     state = "joined" if account.secret else "none" if not waits else "invited"
     if state == "invited" and account.invited_until < request.received_at:
         state = "over"
-    return PersonRow(person.id, person.name, account.login, account.role, state, True)
+    return PersonRow(person.id, person.name, account.login, account.role, state, True, extra_time)
 
 
 def login_of(person: Any) -> str:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Mapping, Sequence
-from datetime import datetime
+from datetime import datetime, timedelta
 from typing import Any, NamedTuple
 
 from markupsafe import Markup
@@ -21,6 +21,7 @@ from coursework.database.publication import (
     ANSWERS,
     FEEDBACK,
     LATE,
+    MOST_MINUTES,
     MOST_TRIES,
     Extension,
     Fault,
@@ -30,7 +31,9 @@ from coursework.database.publication import (
     extend,
     extensions,
     publish,
+    publish_anew,
     set_counting_attempt,
+    starts,
     student_assignments,
 )
 from coursework.database.tables import assignment, audit, dealt, delivery, variant
@@ -54,10 +57,18 @@ from coursework.site.frame.paging import page_of
 from coursework.site.frame.requests import FormData, HTTPException, Request, Route
 from coursework.site.frame.responses import Download, redirect
 from coursework.site.frame.settings import Site
-from coursework.site.frame.times import exact_text, field_text, from_field, moment_text, zone_name
+from coursework.site.frame.times import (
+    exact_text,
+    field_text,
+    from_field,
+    length_text,
+    moment_text,
+    zone_name,
+)
 from coursework.site.papers.assignment_state import AssignmentState, state_of
 from coursework.site.papers.opening import prepare_soon
 from coursework.site.papers.student_paper import StudentPaper, student_paper
+from coursework.site.people.extra_time import extra_time_text
 from coursework.site.publication import assigning, new_assignment
 from coursework.site.publication.assigning import AssignmentRequest
 
@@ -200,6 +211,7 @@ def _page(
     with request.site.store.reading() as connection:
         people = holders(connection, listed.id)
         more = extensions(connection, listed.id)
+        times = _working_times(request, listed, more, starts(connection, listed.id))
         noted = _noted(connection, listed.name)
     page = page_of(request, people, lambda holder: holder.student)
     return request.render(
@@ -208,7 +220,38 @@ def _page(
         field=field_text, moment=lambda at: "" if at is None else moment_text(at, request.lang),
         exact=lambda at: exact_text(at, request.lang), late_rules=LATE, feedback_rules=FEEDBACK, answer_rules=ANSWERS,
         sittings=SITTINGS, sittings_now=listed.stated.get("sittings", SITTINGS[0]), most_tries=MOST_TRIES,
+        most_minutes=MOST_MINUTES, times=times,
     )  # fmt: skip
+
+
+class WorkingTime(NamedTuple):
+    """Working time of a person, as the list shows it."""
+
+    extra: str  #: share of extra time; empty for none
+    allowed: str  #: empty if the assignment has no working time
+    started: str
+    ends: str
+
+
+def _working_times(
+    request: Request,
+    listed: ListedAssignment,
+    more: Mapping[int, Extension],
+    times: Mapping[int, tuple[float, datetime | None]],
+) -> dict[int, WorkingTime]:
+    """Return the working time of each person with extra time, or of everybody if the assignment has one."""
+    publication, lang, found = listed.publication or Publication(), request.lang, {}
+    for person, (extra, started) in times.items():
+        own = publication.personal(more.get(person), extra, started)
+        if not extra and own.minutes is None:
+            continue
+        found[person] = WorkingTime(
+            extra_time_text(extra, lang),
+            "" if own.minutes is None else length_text(timedelta(minutes=own.minutes), lang),
+            exact_text(started, lang) if started else "",
+            exact_text(own.closes, lang) if started and own.closes else "",
+        )
+    return found
 
 
 class PaperHolder(NamedTuple):
@@ -274,7 +317,7 @@ def publish_assignment(request: Request) -> Response:
     if faults:
         return _page(request, listed, publication, faults)
     with request.site.store.begin() as connection:
-        publish(connection, listed.id, publication)
+        publish_anew(connection, listed.id, publication)
         set_counting_attempt(connection, listed.id, sittings)
         prepare_soon(request.site, connection, listed.id)
         _note(request, connection, listed, "assignment published", **publication.as_json(), sittings=sittings)
@@ -309,11 +352,12 @@ def publication_of(form: FormData) -> tuple[Publication, list[Fault]]:
             faults.append(Fault(name, "choice"))
         return chosen if chosen in choices else usual
 
-    usual = Publication()
+    usual, minutes = Publication(), number("minutes", int, None)
     publication = Publication(
         opens=moment("opens"),
         closes=moment("closes"),
         tries=number("tries", int, None),
+        minutes=minutes,
         late=choice("late", LATE, usual.late),
         late_until=moment("late_until"),
         late_percent=number("late_percent", float, 0.0),
@@ -321,7 +365,7 @@ def publication_of(form: FormData) -> tuple[Publication, list[Fault]]:
         feedback_on=moment("feedback_on"),
         answers=choice("answers", ANSWERS, usual.answers),
         answers_on=moment("answers_on"),
-        takes_saved=bool(form.text("takes_saved")),
+        takes_saved=bool(form.text("takes_saved")) or minutes is not None,
     )
     return publication, faults
 
@@ -337,37 +381,35 @@ def unpublish(request: Request) -> Response:
 
 
 def extend_assignment(request: Request) -> Response:
-    """Give one person an extension, with its reason."""
+    """Give people an extension, with its reason."""
     with request.site.store.reading() as connection:
         listed = assignment_here(request, connection)
-        holder = next(
-            (h for h in holders(connection, listed.id) if str(h.person) == request.form.text("person")), None
-        )
+        chosen = request.form.texts.get("person", ())
+        chosen_holders = [h for h in holders(connection, listed.id) if str(h.person) in chosen]
     texts = request.words["publishing"]["faults"]
     reason = request.form.text("reason").strip()[:500]
     stated, faults = publication_of(
-        FormData({"closes": [request.form.text("closes")], "tries": [request.form.text("tries")]})
+        FormData({name: [request.form.text(name)] for name in ("closes", "tries", "minutes")})
     )
-    if holder is None:
+    if not chosen_holders:
         return _page(request, listed, listed.publication or Publication(), problem=texts["who"])
-    if faults or (stated.tries is not None and not 1 <= stated.tries <= MOST_TRIES):
+    faults += [fault for fault in stated.faults() if fault.field in ("tries", "minutes")]
+    if faults:
         return _page(request, listed, listed.publication or Publication(), problem=texts["extension"])
     if not reason:
         return _page(request, listed, listed.publication or Publication(), problem=texts["reason"])
-    more = Extension(stated.closes, stated.tries, reason, request.user.name, request.received_at)
+    by, at = request.user.name, request.received_at
+    more = Extension(stated.closes, stated.tries, reason, by, at, stated.minutes)
+    about = {
+        "closes": stated.closes.isoformat() if stated.closes else "",
+        "tries": stated.tries,
+        "minutes": stated.minutes,
+    }
     with request.site.store.begin() as connection:
-        extend(connection, listed.id, holder.person, more)
-        prepare_soon(request.site, connection, listed.id, holder.person)
-        closes = stated.closes.isoformat() if stated.closes else ""
-        _note(
-            request,
-            connection,
-            listed,
-            "extension",
-            student=holder.student,
-            closes=closes,
-            tries=stated.tries,
-        )
+        for holder in chosen_holders:
+            extend(connection, listed.id, holder.person, more)
+            prepare_soon(request.site, connection, listed.id, holder.person)
+            _note(request, connection, listed, "extension", student=holder.student, **about)
     return _redirect(listed)
 
 
