@@ -17,9 +17,10 @@ from coursework.database.permissions import (
     may,
 )
 from coursework.database.tables import area, assignment, dealt, person, variant
-from coursework.issuing.identity import is_called
+from coursework.errors import bare_letters
+from coursework.issuing.identity import GROUP, is_called
 
-GROUP = ("group", "groupe", "td", "groupe de td", "section")  #: titles of the roster's column of groups
+_GROUP = (*GROUP, "section")  #: titles of the roster's column of groups
 
 
 def areas_of(connection: Connection, number: int) -> tuple[Area, ...]:
@@ -42,7 +43,7 @@ def put_areas(connection: Connection, number: int, areas: Iterable[Area]) -> Non
 def group_of(columns: Mapping[str, Any] | None) -> str:
     """Return the group in a line of a roster, as it is written; empty if it names none."""
     groups = (
-        str(value).strip() for title, value in (columns or {}).items() if value and is_called(title, GROUP)
+        str(value).strip() for title, value in (columns or {}).items() if value and is_called(title, _GROUP)
     )
     return next(groups, "")
 
@@ -55,9 +56,19 @@ def groups_known(connection: Connection) -> dict[str, str]:
     return {group_key(group): group for group in sorted(groups, reverse=True) if group}
 
 
+def group_names(connection: Connection, number: int) -> dict[str, str]:
+    """Return the groups of an assignment's students as they are written, by their keys, in order."""
+    names = {name for name in _groups_as_written(connection, number).values() if name}
+    return {group_key(name): name for name in sorted(names, key=lambda name: (bare_letters(name), name))}
+
+
 def groups_of(connection: Connection, number: int) -> dict[str, str]:
     """Return the key of the group of each student of an assignment: from its own roster, else from the
     columns of the person."""
+    return {student: group_key(group) for student, group in _groups_as_written(connection, number).items()}
+
+
+def _groups_as_written(connection: Connection, number: int) -> dict[str, str]:
     columns = connection.execute(select(assignment.c.columns).where(assignment.c.id == number)).scalar() or {}
     given = (
         select(dealt.c.student, person.c.id, person.c.columns)
@@ -67,7 +78,7 @@ def groups_of(connection: Connection, number: int) -> dict[str, str]:
     groups = {row.student: group_of(row.columns) for row in connection.execute(given)}
     for student, student_columns in columns.items():
         groups[student] = group_of(student_columns) or groups.get(student, "")
-    return {student: group_key(group) for student, group in groups.items()}
+    return groups
 
 
 def students_within(connection: Connection, holder: PermissionHolder, number: int) -> frozenset[str] | None:

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cache, cached_property, partial
 from hashlib import sha256
+from typing import Any, TypeVar
 
 from coursework.course.course import Course
 from coursework.database.instructor_queries import (
@@ -33,6 +34,10 @@ from coursework.gradebook.waiting import (
 from coursework.issuing.issued import Issued
 from coursework.issuing.students import namesakes
 from coursework.messages import localised
+
+_GROUPS = 40  #: parts of a class that are kept at hand
+_Key = TypeVar("_Key", bound=tuple[Any, ...])
+_Value = TypeVar("_Value")
 
 
 @dataclass(frozen=True)
@@ -90,6 +95,39 @@ class ClassState:
     placings: Mapping[str, Placing]
     site_submissions: Mapping[str, SiteSubmissions]
     charged: Mapping[Sitting, float]  #: penalties of late submissions, as shares of the points
+    is_whole: bool = True  #: False for a part of the class
+
+    def within(self, students: frozenset[str]) -> ClassState:
+        """Return the class as it is for some of its students: nothing of the others, and no row that names nobody."""
+        narrowed: dict[frozenset[str], ClassState] = self.__dict__.setdefault("_narrowed", {})
+        if students not in narrowed:
+            while len(narrowed) >= _GROUPS:
+                del narrowed[next(iter(narrowed))]
+            narrowed[students] = self._only(students)
+        narrowed[students].about = self.about
+        return narrowed[students]
+
+    def _only(self, students: frozenset[str]) -> ClassState:
+        def of_them(table: Mapping[_Key, _Value]) -> dict[_Key, _Value]:
+            return {key: value for key, value in table.items() if key[0] in students}
+
+        rejected = [row for row in self.sheets.rejected if self._named_by(row) in students]
+        sheets = replace(self.sheets, sheets=of_them(self.sheets.sheets), rejected=rejected, warnings=[])
+        part = replace(
+            self,
+            issued=self.issued.among(students),
+            machine=of_them(self.machine),
+            numbers=of_them(self.numbers),
+            sheets=sheets,
+            faults=of_them(self.faults),
+            site_submissions={name: one for name, one in self.site_submissions.items() if name in students},
+            charged=of_them(self.charged),
+            is_whole=False,
+        )
+        # An adjustment is of the whole class, and so are its results.
+        part.__dict__["graded"] = of_them(self.graded)
+        part.__dict__["adjusted"] = self.adjusted.among(students)
+        return part
 
     @cached_property
     def is_marked(self) -> bool:

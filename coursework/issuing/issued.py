@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from copy import copy
 from functools import cached_property
 from pathlib import Path
@@ -221,6 +221,25 @@ class Issued:
         part.columns = {student: self.columns[student]} if student in self.columns else {}
         part.students, part._named = (student,), frozenset({student})
         part._known, part._people = {folded(student): student}, _People((student,), part.columns)
+        return part
+
+    def among(self, students: Collection[str]) -> Issued:
+        """Return the record as it is for some of the students: all variants, and nothing else of the others."""
+        part = copy(self)
+        part.has_roster = True
+        part.students = tuple(student for student in self.students if student in students)
+        part._named, part._known = frozenset(part.students), {folded(s): s for s in part.students}
+        part.columns = {
+            student: self.columns[student] for student in part.students if student in self.columns
+        }
+        part._people = _People(part.students, part.columns)
+        part.owners = {
+            key: mine
+            for key, owners in self.owners.items()
+            if (mine := tuple(student for student in owners if student in part._named))
+        }
+        part.seeds = {key: seed for key, seed in self.seeds.items() if key[0] in part._named}
+        part._sittings = {key: seeds for key, seeds in self._sittings.items() if key[0] in part._named}
         return part
 
     @cached_property

@@ -9,12 +9,14 @@ from dataclasses import dataclass, field, replace
 from datetime import timedelta
 from threading import Lock, RLock
 from typing import Any
+from urllib.parse import urlencode
 from weakref import WeakKeyDictionary
 
 from sqlalchemy import Connection
 from starlette.responses import Response
 
 from coursework.course.course import Course
+from coursework.database.areas import group_names, students_in, students_within
 from coursework.database.assignments import issued_of
 from coursework.database.class_state import ClassState
 from coursework.database.current_marks import last_markings, lines_of, machine_marks
@@ -28,6 +30,7 @@ from coursework.database.instructor_queries import (
     stamp,
     unmarked,
 )
+from coursework.database.permissions import group_key, groups_within
 from coursework.database.publication import late_penalties
 from coursework.database.store import Store
 from coursework.database.submissions import rows_of
@@ -171,16 +174,49 @@ def _measured(
     return dict(zip(numbers, measures(course, issued, graded), strict=True))
 
 
+CLASS_GROUP = "class_group"  #: parameter of an address that names a group
+
+
 def class_here(request: Request) -> ClassState:
-    """Return the current state of the class that the address names."""
-    return class_now(request.site, request.path_params["assignment"])
+    """Return the current state of the class that the address names, as far as the user may see it, and of the
+    group alone that the query names."""
+    number = request.path_params["assignment"]
+    return class_within(request.site, number, students_here(request, number))
+
+
+def class_within(site: Site, number: int, students: frozenset[str] | None) -> ClassState:
+    """Return the current state of some of the students of a class; None for all of them."""
+    now = class_now(site, number)
+    return now if students is None else now.within(students)
+
+
+def students_here(request: Request, number: int) -> frozenset[str] | None:
+    """Return the students of an assignment whom a page shows: those whom the user may see, of the group that the
+    query names; None for the whole class."""
+    wanted = group_key(request.query_params.get(CLASS_GROUP, ""))
+    with request.site.store.reading() as connection:
+        within = students_within(connection, request.user, number)
+        if not wanted:
+            return within
+        chosen = students_in(connection, number, {wanted})
+    return chosen if within is None else chosen & within
+
+
+def _groups_here(request: Request, number: int) -> dict[str, str]:
+    """Return the groups that the user may choose, by their keys."""
+    with request.site.store.reading() as connection:
+        names = group_names(connection, number)
+    mine = groups_within(request.user, number)
+    return {key: name for key, name in names.items() if mine is None or key in mine}
 
 
 def class_page_of(request: Request, now: Any, template: str, tab: str, **names: Any) -> Response:
     """Return an instructor's page of one assignment, under its heading; ``now`` is its state or its table."""
+    group = group_key(request.query_params.get(CLASS_GROUP, ""))
     return request.render(
-        template, now=now, tab=tab, heading=assignment_title(now.about, request.lang), **names
-    )
+        template, now=now, tab=tab, heading=assignment_title(now.about, request.lang), class_group=group,
+        class_groups=_groups_here(request, now.about.id), group_query=urlencode({CLASS_GROUP: group}) if group else "", **names,
+    )  # fmt: skip
 
 
 def assignment_title(about: AssignmentOverview, lang: str) -> str:

@@ -13,7 +13,7 @@ from coursework.issuing.students import folded
 from coursework.language.numbers import localise
 from coursework.rendering.feedback import verdict_word
 from coursework.site.desk.class_cache import class_page_of
-from coursework.site.desk.class_table import ClassRow, ClassTable, class_table
+from coursework.site.desk.class_table import ClassRow, ClassTable, table_here
 from coursework.site.frame.paging import page_of
 from coursework.site.frame.requests import Request, Route
 from coursework.site.frame.responses import redirect
@@ -25,7 +25,7 @@ SORTS = ("name", "total", "waits", "late", "tries")
 
 def class_page(request: Request) -> Response:
     """Return the table of the class."""
-    now = class_table(request.site, request.path_params["assignment"])
+    now = table_here(request, request.path_params["assignment"])
     table_rows = now.rows
     sort, sought = request.query_params.get("sort", ""), request.query_params.get("find", "").strip()
     selected = sorted((row for row in table_rows if _matches(row, sought)), key=_sorting(now, sort))
@@ -39,7 +39,7 @@ def class_page(request: Request) -> Response:
 
 def news(request: Request) -> Response:
     """Return the rows that changed since a stamp; an empty response if none did."""
-    now = class_table(request.site, request.path_params["assignment"])
+    now = table_here(request, request.path_params["assignment"])
     before = Stamp.read(request.query_params.get("stamp", ""))
     if before == now.stamp:
         return Response(status_code=204)
@@ -98,6 +98,6 @@ def _sorting(now: ClassTable, sort: str) -> Callable[[ClassRow], Any]:
 
 
 ROUTES = (
-    Route("/desk/{assignment:int}", class_page, Permission.MARKS_READ),
-    Route("/desk/{assignment:int}/news", news, Permission.MARKS_READ),
+    Route("/desk/{assignment:int}", class_page, Permission.MARKS_READ, by_group=True),
+    Route("/desk/{assignment:int}/news", news, Permission.MARKS_READ, by_group=True),
 )

@@ -26,9 +26,9 @@ from coursework.gradebook.graded_sheet import Graded
 from coursework.gradebook.scale import mark_of
 from coursework.issuing.students import folded
 from coursework.marking.mark import Mark
-from coursework.site.desk.class_cache import class_now
+from coursework.site.desk.class_cache import class_now, class_within, students_here
 from coursework.site.desk.question_cards import sign_of
-from coursework.site.frame.requests import HTTPException
+from coursework.site.frame.requests import HTTPException, Request
 from coursework.site.frame.settings import Site
 from coursework.site.papers.submission import pass_dates
 from coursework.system.garbage import paused_collection
@@ -196,13 +196,32 @@ def class_table(site: Site, assignment_id: int) -> ClassTable:
     return computed_table(site, assignment_id) if stored is None else ClassTable(about, at, *stored)
 
 
-def computed_table(site: Site, assignment_id: int) -> ClassTable:
-    """Return the table of a class, computed from the class; store it once every sheet is marked."""
-    now = class_now(site, assignment_id)
+def table_here(request: Request, assignment_id: int) -> ClassTable:
+    """Return the table of the students whom a page shows: the whole class, or a part of it.
+
+    Raises
+    ------
+    HTTPException
+        There is no such assignment.
+    """
+    students = students_here(request, assignment_id)
+    if students is None:
+        return class_table(request.site, assignment_id)
+    return _table(class_within(request.site, assignment_id, students))
+
+
+def _table(now: ClassState) -> ClassTable:
     with paused_collection():
         handed_in = len({graded.student for graded in now.machine.values()})
         counts = ClassCounts(len(now.issued.students) or len(now.results), handed_in, now.waiting)
-        table = ClassTable(now.about, now.stamp, counts, _content(now))
+        return ClassTable(now.about, now.stamp, counts, _content(now))
+
+
+def computed_table(site: Site, assignment_id: int) -> ClassTable:
+    """Return the table of a class, computed from the class; store it once every sheet is marked."""
+    now = class_now(site, assignment_id)
+    table = _table(now)
+    counts = table.counts
     if now.is_marked:
         with suppress(BadInput, IntegrityError), site.store.begin() as connection:
             states = summary_states(connection, site.course, [now.about], {assignment_id: now.stamp})

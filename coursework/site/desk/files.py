@@ -29,7 +29,7 @@ from coursework.gradebook.rows import AnswerRow, PlatformFile, Rejected
 from coursework.issuing.issued import COLUMNS
 from coursework.messages import as_message, localised
 from coursework.site.desk import uploads
-from coursework.site.desk.class_cache import class_here, class_now, class_page_of
+from coursework.site.desk.class_cache import class_here, class_page_of
 from coursework.site.desk.question_cards import moment
 from coursework.site.frame.budgets import DESK_FILES, read_apart
 from coursework.site.frame.forms import read_upload
@@ -61,7 +61,7 @@ def files_page(
     ]
     return class_page_of(
         request, now, "site/instructor/files", "files", told=list(messages), files=files[::-1][:50], rejected=now.rejected,
-        platforms=PLATFORMS.values(), scores=SCORES, downloads=list(_TABLES), filled=_filled(request, filled, name),
+        platforms=PLATFORMS.values(), scores=SCORES, downloads=list(_tables(now)), filled=_filled(request, filled, name),
     )  # fmt: skip
 
 
@@ -89,7 +89,7 @@ def answers_in(request: Request) -> Response:
     if not submission.is_new:
         return files_page(request, [texts["again"].format(moment(submission.received_at, request.lang))])
     marked = mark_submission(request.site.course, request.site.store, submission.id)
-    now = class_now(request.site, number)
+    now = class_here(request)
     sources = {item.source for item in rows if not isinstance(item, PlatformFile)}
     lost = sum(item.row.source in sources for item in now.rejected)
     return files_page(request, [texts["came"].format(answers, marked.marked, lost)])
@@ -194,9 +194,14 @@ def _rejected(request: Request, now: ClassState) -> bytes:
     return csv_file(rejected_rows(now.book.rejected), REJECTED_COLUMNS, _spreadsheet(request))
 
 
+def _shows(now: ClassState, student: str) -> bool:
+    """Return True if tables of a class, or of a part of it, contain a student."""
+    return now.is_whole or student in now.issued.students
+
+
 def _decided(request: Request, now: ClassState) -> bytes:
     with request.site.store.reading() as connection:
-        decisions = decided_since(connection, now.about.id, 0)
+        decisions = [one for one in decided_since(connection, now.about.id, 0) if _shows(now, one.student)]
     rows = (
         {**one._asdict(), "made": one.made and one.made.isoformat(timespec="seconds")} for one in decisions
     )
@@ -216,7 +221,11 @@ def _issued(request: Request, now: ClassState) -> bytes:
 
 def _answers(request: Request, now: ClassState) -> bytes:
     with request.site.store.reading() as connection:
-        rows = [row for row in rows_of(connection, now.about.id) if isinstance(row, AnswerRow)]
+        rows = [
+            row
+            for row in rows_of(connection, now.about.id)
+            if isinstance(row, AnswerRow) and _shows(now, now.issued.student(row.student) or "")
+        ]
     columns = (*COLUMNS, "sitting", "submitted", "source")
     answers = ({**as_texts(row), "source": row.source, **_origin(row)} for row in rows)
     return csv_file(answers, columns)
@@ -248,16 +257,23 @@ _TABLES: Mapping[str, Callable[[Request, ClassState], bytes]] = {
 }
 
 
+def _tables(now: ClassState) -> Mapping[str, Callable[[Request, ClassState], bytes]]:
+    """Return the makers of the tables of a class; of a part of it, those that name nobody else."""
+    return (
+        _TABLES if now.is_whole else {name: make for name, make in _TABLES.items() if name != "issued.json"}
+    )
+
+
 def table(request: Request) -> Response:
     """Return one table, or all of them in an archive."""
     now = class_here(request)
     name = str(request.path_params["file"])
     if name == "archive.zip":
-        files = {member: make(request, now) for member, make in _TABLES.items()} | {
-            "deliveries.csv": _submissions(request, now)
-        }
+        files = {member: make(request, now) for member, make in _tables(now).items()}
+        if now.is_whole:
+            files["deliveries.csv"] = _submissions(request, now)
         return Download(zipped(files), "application/zip", f"{_safe(now.about.name)}.zip")
-    if name not in _TABLES:
+    if name not in _tables(now):
         raise HTTPException("page", 404)
     kind = "application/json" if name.endswith(".json") else "text/csv; charset=utf-8"
     return Download(_TABLES[name](request, now), kind, name)
@@ -353,7 +369,7 @@ def _filled(request: Request, filled: Filled | None, name: str) -> Mapping[str, 
 
 
 ROUTES = (
-    Route("/desk/{assignment:int}/files", files_page, Permission.MARKS_EXPORT),
+    Route("/desk/{assignment:int}/files", files_page, Permission.MARKS_EXPORT, by_group=True),
     Route(
         "/desk/{assignment:int}/answers",
         answers_in,
@@ -375,9 +391,10 @@ ROUTES = (
         gradebook,
         Permission.MARKS_EXPORT,
         takes_forms=True,
+        by_group=True,
         limit="upload",
         budget=DESK_FILES,
     ),
-    Route("/desk/{assignment:int}/feedback", feedback, Permission.MARKS_EXPORT),
-    Route("/desk/{assignment:int}/files/{file}", table, Permission.MARKS_EXPORT),
+    Route("/desk/{assignment:int}/feedback", feedback, Permission.MARKS_EXPORT, by_group=True),
+    Route("/desk/{assignment:int}/files/{file}", table, Permission.MARKS_EXPORT, by_group=True),
 )

@@ -6,16 +6,18 @@ from dataclasses import dataclass
 from datetime import timedelta
 from pathlib import PurePath
 
+from sqlalchemy import Connection
 from starlette.responses import Response
 
+from coursework.database.areas import students_within
 from coursework.database.assignments import put_issued
 from coursework.database.class_summaries import ClassCounts, stored_counts, summary_states
 from coursework.database.instructor_queries import AssignmentOverview, listed_assignments, stamps
-from coursework.database.permissions import Permission
+from coursework.database.permissions import Permission, groups_within
 from coursework.errors import BadInput, CourseworkError
 from coursework.issuing.issued import Issued
 from coursework.site.desk.class_cache import assignment_title, class_here
-from coursework.site.desk.class_table import computed_table
+from coursework.site.desk.class_table import computed_table, table_here
 from coursework.site.desk.question_cards import moment, question_card
 from coursework.site.frame.budgets import DESK_FILES, read_apart
 from coursework.site.frame.clock import Leap, last_leap
@@ -48,7 +50,9 @@ def overview(request: Request) -> Response:
     return request.render(
         "site/instructor/desk",
         tiles=[
-            _counted(request, about, counts[about.id]) if about.id in counts else _tile(request, about)
+            _counted(request, about, counts[about.id])
+            if about.id in counts and _is_whole(request, about)
+            else _tile(request, about)
             for about in assignments
         ],
         told=request.query_params.get("told", ""),
@@ -61,10 +65,23 @@ def _stored(request: Request) -> tuple[list[AssignmentOverview], dict[int, Class
     the clock."""
     with request.site.store.reading() as connection:
         listed = listed_assignments(connection)
-        assignments = [item for item in listed if request.user.may(Permission.MARKS_READ, item.id, "")]
+        assignments = [item for item in listed if _sees(request, connection, item.id)]
         at = stamps(connection, [about.id for about in assignments])
         states = summary_states(connection, request.site.course, assignments, at)
         return assignments, stored_counts(connection, states), last_leap(connection, request.received_at)
+
+
+def _sees(request: Request, connection: Connection, number: int) -> bool:
+    """Return True if the user marks somebody in an assignment."""
+    if not request.user.may(Permission.MARKS_READ, number):
+        return False
+    within = students_within(connection, request.user, number)
+    return within is None or bool(within)
+
+
+def _is_whole(request: Request, about: AssignmentOverview) -> bool:
+    """Return True if the user sees the whole class of an assignment."""
+    return groups_within(request.user, about.id) is None
 
 
 def _clock_text(request: Request, leap: Leap) -> str:
@@ -79,7 +96,8 @@ def _clock_text(request: Request, leap: Leap) -> str:
 def _tile(request: Request, about: AssignmentOverview) -> Tile:
     """Return the tile of an assignment that has changed; with the reason if the course of the site cannot mark it."""
     try:
-        table = computed_table(request.site, about.id)
+        whole = _is_whole(request, about)
+        table = computed_table(request.site, about.id) if whole else table_here(request, about.id)
     except CourseworkError as fault:
         if isinstance(fault, HTTPException):
             raise
@@ -148,5 +166,5 @@ def figure(request: Request) -> Response:
 ROUTES = (
     Route("/desk", overview, Permission.DESK),
     Route("/desk/issued", bring, Permission.FILES_BRING, takes_forms=True, limit="upload", budget=DESK_FILES),
-    Route("/desk/{assignment:int}/figure", figure, Permission.MARKS_READ),
+    Route("/desk/{assignment:int}/figure", figure, Permission.MARKS_READ, by_group=True),
 )

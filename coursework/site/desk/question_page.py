@@ -150,8 +150,8 @@ def statistics(request: Request) -> Response:
 
 
 ROUTES = (
-    Route("/desk/{assignment:int}/questions", questions, Permission.MARKS_READ),
-    Route("/desk/{assignment:int}/question", question, Permission.MARKS_READ),
-    Route("/desk/{assignment:int}/report", statistics, Permission.MARKS_READ),
-    Route("/desk/{assignment:int}/report.pdf", statistics, Permission.MARKS_READ),
+    Route("/desk/{assignment:int}/questions", questions, Permission.MARKS_READ, by_group=True),
+    Route("/desk/{assignment:int}/question", question, Permission.MARKS_READ, by_group=True),
+    Route("/desk/{assignment:int}/report", statistics, Permission.MARKS_READ, by_group=True),
+    Route("/desk/{assignment:int}/report.pdf", statistics, Permission.MARKS_READ, by_group=True),
 )

@@ -26,7 +26,7 @@ from coursework.gradebook.graded_sheet import Graded
 from coursework.gradebook.waiting import SHOWN_ON_REQUEST, WHY, AnswerGroup, AnswerToReview, written
 from coursework.language.numbers import localise, significant
 from coursework.rendering.surface import drawn_figure, has_surface
-from coursework.site.desk.class_cache import class_here, class_now, class_page_of
+from coursework.site.desk.class_cache import class_here, class_page_of
 from coursework.site.desk.question_cards import (
     QuestionCard,
     decided_words,
@@ -197,7 +197,7 @@ def decided(request: Request) -> Response:
         message = _decide(request, now, group)
     except BadInput as fault:
         return card_response(request, now, filters, name, message=str(fault))
-    later = class_now(request.site, now.about.id)
+    later = class_here(request)
     return card_response(request, later, filters, _after(before, name, later, filters), message=message)
 
 
@@ -390,7 +390,7 @@ def _undone(request: Request, now: ClassState, filters: Filters) -> Response:
             withdrawn = [b._replace(kind=WITHDRAWN, points=None, reason="", by=by) for b in batch]
             decide(connection, now.about.id, withdrawn)
             request.note(connection, "undo", assignment=now.about.id, count=len(batch))
-    later = class_now(request.site, now.about.id)
+    later = class_here(request)
     if not batch:
         return card_response(
             request, later, filters, request.form.text("group"), message=texts["nothing_to_undo"]
@@ -402,6 +402,8 @@ def _undone(request: Request, now: ClassState, filters: Filters) -> Response:
 
 
 ROUTES = (
-    Route("/desk/{assignment:int}/queue", queue_page, Permission.MARKS_DECIDE, takes_forms=True),
-    Route("/desk/{assignment:int}/queue/watch", watch, Permission.MARKS_DECIDE),
+    Route(
+        "/desk/{assignment:int}/queue", queue_page, Permission.MARKS_DECIDE, takes_forms=True, by_group=True
+    ),
+    Route("/desk/{assignment:int}/queue/watch", watch, Permission.MARKS_DECIDE, by_group=True),
 )

@@ -11,7 +11,7 @@ from coursework.database.permissions import Permission
 from coursework.database.submissions import insert_submission
 from coursework.errors import BadInput
 from coursework.gradebook.rows import AnswerRow, RowOrigin
-from coursework.site.desk.class_cache import class_here, class_now
+from coursework.site.desk.class_cache import class_here
 from coursework.site.desk.files import files_page
 from coursework.site.desk.queue import Filters, card_response
 from coursework.site.frame.requests import HTTPException, Request, Route
@@ -31,7 +31,7 @@ def rejected(request: Request) -> Response:
         message = str(fault)
     if request.form.text("from") == "queue":
         filters = Filters.of({k: request.form.text(k) for k in ("why", "exercise", "part")})
-        return card_response(request, class_now(request.site, now.about.id), filters, "", message)
+        return card_response(request, class_here(request), filters, "", message)
     return files_page(request, [message])
 
 
@@ -110,4 +110,8 @@ def _answer(request: Request, now: ClassState, row: UnplacedRow) -> AnswerRow:
     )
 
 
-ROUTES = (Route("/desk/{assignment:int}/rejected", rejected, Permission.MARKS_DECIDE, takes_forms=True),)
+ROUTES = (
+    Route(
+        "/desk/{assignment:int}/rejected", rejected, Permission.MARKS_DECIDE, takes_forms=True, by_group=True
+    ),
+)

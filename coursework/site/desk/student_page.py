@@ -34,7 +34,7 @@ from coursework.issuing.students import folded
 from coursework.language.numbers import localise
 from coursework.marking.mark import Mark
 from coursework.rendering.surface import drawn_figure
-from coursework.site.desk.class_cache import class_here, class_now, class_page_of
+from coursework.site.desk.class_cache import class_here, class_page_of
 from coursework.site.desk.question_cards import (
     QuestionCard,
     decided_words,
@@ -94,7 +94,7 @@ def student_page(request: Request) -> Response:
             message = _decided(request, now, student)
         except BadInput as fault:
             message = str(fault)
-        now = class_now(request.site, now.about.id)
+        now = class_here(request)
     result = now.results[student]
     with request.site.store.reading() as connection:
         happened = history(connection, now.about.id, student)
@@ -220,5 +220,6 @@ ROUTES = (
         Permission.MARKS_READ,
         takes_forms=True,
         form_permission=Permission.MARKS_DECIDE,
+        by_group=True,
     ),
 )

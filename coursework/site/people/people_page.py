@@ -61,11 +61,12 @@ def everybody(request: Request) -> Response:
         return _invite(request)
     with request.site.store.reading() as connection:
         lines = _lines(request, connection)
+        groups, assignments = groups_known(connection), _titled_assignments(request, connection)
     page = page_of(request, lines, lambda line: f"{line.name} {line.login}")
     may_invite = {role: may(request.user, to_invite(role)) for role in ROLES}
     return request.render(
         "site/instructor/people", page=page, lines=page.rows, added=_count(request.query_params.get("added", "")), may_invite=may_invite,
-        staff_roles=_staff_roles(request), left=bool(request.query_params.get("left")),
+        staff_roles=_staff_roles(request), any=_ANY, areas=(), groups=groups, assignments=assignments, left=bool(request.query_params.get("left")),
     )  # fmt: skip
 
 
@@ -183,6 +184,9 @@ def add_staff(request: Request) -> Response:
             raise HTTPException("login_taken", 409, account.login)
         line = PersonRow(person, student.name, login_of(person_by_id(connection, person)), role, "none")
         link = _link(request, connection, line)
+        if role == ASSISTANT and (areas := _areas_of_form(request, connection, person)):
+            put_areas(connection, person, areas)
+            request.note(connection, "role", person=person, before=role, role=role, areas=_areas_text(areas))
     return request.render("site/instructor/links", links=[link], days=DAYS)
 
 
@@ -197,15 +201,17 @@ def person_page(request: Request) -> Response:
         last = is_last_administrator(connection, person.id)
         areas = areas_of(connection, person.id)
         groups = groups_known(connection)
-        assignments = [
-            (about.id, assignment_title(about, request.lang)) for about in listed_assignments(connection)
-        ]
+        assignments = _titled_assignments(request, connection)
         ties = _ties(connection, person.id)
     return request.render(
         "site/instructor/person", line=line, last=last, columns=person.columns or {}, roles=ROLES,
         may_invite=may(request.user, to_invite(line.role)), groups={**groups, **_gone(areas, groups)},
         assignments=assignments, areas=areas, any=_ANY, ties=ties,
     )  # fmt: skip
+
+
+def _titled_assignments(request: Request, connection: Connection) -> list[tuple[int, str]]:
+    return [(about.id, assignment_title(about, request.lang)) for about in listed_assignments(connection)]
 
 
 def _gone(areas: Sequence[Area], groups: Any) -> dict[str, str]:
@@ -255,9 +261,9 @@ def change_role(request: Request) -> Response:
         if role != line.role and is_last_administrator(connection, line.id):
             raise HTTPException("last_administrator", 409)
         needs_link = set_role(connection, line.id, role)
-        areas = _areas_of_form(request, connection) if role == ASSISTANT else []
+        areas = _areas_of_form(request, connection, line.id) if role == ASSISTANT else []
         put_areas(connection, line.id, areas)
-        about = {"areas": "; ".join(map(_area_text, areas)) or "–"} if role == ASSISTANT else {}
+        about = {"areas": _areas_text(areas)} if role == ASSISTANT else {}
         request.note(connection, "role", person=line.id, before=line.role, role=role, **about)
         link = _link(request, connection, line._replace(role=role)) if needs_link else None
     if link is not None:
@@ -265,7 +271,7 @@ def change_role(request: Request) -> Response:
     return redirect(f"/desk/people/{line.id}")
 
 
-def _areas_of_form(request: Request, connection: Connection) -> list[Area]:
+def _areas_of_form(request: Request, connection: Connection, person: int) -> list[Area]:
     """Return the areas that a form selects: each group in each assignment; none if one of the two lists is
     empty."""
     assignments, groups = (
@@ -275,14 +281,15 @@ def _areas_of_form(request: Request, connection: Connection) -> list[Area]:
     numbers = request.form.texts.get("assignment", ())
     named = request.form.texts.get("group", ())
     where = [None] if _ANY in numbers else [assignments[item] for item in numbers if item in assignments]
-    before = {area.group for area in areas_of(connection, number(str(request.path_params["person"])))}
+    before = {area.group for area in areas_of(connection, person)}
     chosen_groups = [None] if _ANY in named else [item for item in named if item in groups or item in before]
     return [Area(assignment, group) for assignment in where for group in chosen_groups]
 
 
-def _area_text(area: Area) -> str:
-    """Return an area as the audit records it: the assignment's number and the group, ``*`` for all."""
-    return f"{area.assignment or _ANY} / {_ANY if area.group is None else area.group}"
+def _areas_text(areas: Sequence[Area]) -> str:
+    """Return areas as the audit records them: the assignment's number and the group, ``*`` for all."""
+    texts = (f"{area.assignment or _ANY} / {_ANY if area.group is None else area.group}" for area in areas)
+    return "; ".join(texts) or "–"
 
 
 def somebody(request: Request, connection: Connection) -> Any:
