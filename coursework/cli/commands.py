@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from coursework.cli.options import FilePath
+from coursework.cli.options import FilePath, zone_option
 from coursework.errors import unknown
 from coursework.system.cache import cached_result
 from coursework.system.distribution import VERSION
@@ -96,6 +96,7 @@ class _Commands(click.Group):
 
 @click.group(cls=_Commands, context_settings={"help_option_names": ["-h", "--help"]})
 @click.option("--course", "folder", type=FilePath(), help="Course folder; by default the built-in course.")
+@zone_option
 @click.version_option(VERSION, prog_name="coursework")
 @click.pass_context
 def commands(context: click.Context, folder: str | None) -> None:

@@ -293,7 +293,7 @@ def history(
         say("nothing was marked")
     for entry in entries:
         about = f"{entry.student}, {entry.exercise} {entry.seed}, {entry.part}"
-        click.echo(f"{entry.made:%Y-%m-%d %H:%M:%S} UTC  {about}: {_happened(entry)}".rstrip())
+        click.echo(f"{entry.made.astimezone():%Y-%m-%d %H:%M:%S %Z}  {about}: {_happened(entry)}".rstrip())
 
 
 def _check_student(connection: Any, number: int, student: str) -> None:

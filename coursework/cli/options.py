@@ -69,6 +69,22 @@ def needing_extra(ready: Callable[[], None]) -> Callable[[click.Context, click.P
     return checked
 
 
+def _set_zone(context: click.Context, parameter: click.Parameter, name: str | None) -> None:
+    if name and not context.resilient_parsing:
+        from coursework.system.zone import set_zone
+
+        set_zone(name)
+
+
+zone_option = click.option(
+    "--timezone",
+    metavar="ZONE",
+    callback=_set_zone,
+    expose_value=False,
+    help="Time zone of the school, in which times are read and written: Europe/Paris; by default the machine's.",
+)
+
+
 def database_ready() -> None:
     """Refuse a database where its libraries are missing."""
     libraries(("sqlalchemy",), "a database needs", "site")

@@ -22,6 +22,7 @@ from coursework.cli.options import (
     lang_option,
     needing_extra,
     print_notes,
+    zone_option,
 )
 from coursework.cli.printing import warn
 from coursework.errors import BadInput, unknown
@@ -107,6 +108,7 @@ def _lti_ready() -> None:
     metavar="FOLDER",
     help=("Serve the learning platforms of this folder's platforms.toml under /lti (see 'coursework lti')."),
 )
+@zone_option
 @open_option
 @click.pass_context
 def serve(

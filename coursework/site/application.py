@@ -14,6 +14,7 @@ from starlette.middleware.gzip import DEFAULT_EXCLUDED_CONTENT_TYPES, GZipMiddle
 from starlette.routing import BaseRoute, Mount
 from starlette.routing import Route as StarletteRoute
 
+from coursework.site import health
 from coursework.site.desk import (
     class_page,
     files,
@@ -94,6 +95,7 @@ def application(site: Site, lti: Starlette | None = None) -> Starlette:
         )
         for route in ROUTES
     ]
+    routes.append(StarletteRoute(health.PATH, health.Health(site).answer, methods=["GET"]))
     if lti is not None:
         routes.append(Mount("/lti", app=lti))
     app = Starlette(
