@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections import Counter
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import Any, NamedTuple
 
@@ -83,8 +83,11 @@ def _drawn_and_run(course: Course[Any], name: str, lang: str, lesson: LessonFile
         created = _Lesson(
             course, name, lang, session, LessonNumbers(number, lang, boxes_of(course.folder, name, lang))
         )
-        for block in _untitled(lesson.blocks):
-            created.add(block)
+        blocks = list(_untitled(lesson.blocks))
+        for place, block in enumerate(blocks):
+            created.add(
+                block, next((b for b in blocks[place + 1 :] if isinstance(b, source.LessonProse)), None)
+            )
     title = lesson_title(course.folder, name, lang)
     return LessonText(name, number, lang, title, tuple(created.pieces), tuple(created.answers), lesson.terms)
 
@@ -107,38 +110,50 @@ class _Lesson:
         self._numbers = numbers
         self.pieces: list[Piece] = []
         self.answers: list[tuple[int, tuple[Piece, ...]]] = []
+        self._asks_there = False  #: what explains the last prediction ends with a question
 
-    def add(self, block: source.Block) -> None:
+    def add(self, block: source.Block, next_prose: source.LessonProse | None = None) -> None:
+        """Add a block; ``next_prose`` is the running text that follows it."""
         match block:
             case source.LessonProse():
                 self._prose(block.text)
             case source.LessonImage():
                 picture = drawn(self._course, self._name, block, self._lang)
                 self.pieces.append(self._numbers.figure(picture))
+            case source.LessonAnswer() if self._asks_there:
+                self._tell((ProsePiece(block.text),))
             case source.LessonAnswer():
                 self._later((ProsePiece(block.text),))
             case source.CodeCell():
-                self._cell(block)
+                self._cell(block, next_prose is not None and self._explains(next_prose.text))
+
+    def _explains(self, text: str) -> bool:
+        """Return True if a text explains the last prediction: only drawings stand between."""
+        asked = next((piece for piece in reversed(self.pieces) if not isinstance(piece, DrawnPiece)), None)
+        return isinstance(asked, LaterPiece) and text.startswith(words(self._lang)["lesson"]["explains"])
 
     def _prose(self, text: str) -> None:
         """Add running text; what explains a prediction stands with the answer that it would give away."""
-        explains = words(self._lang)["lesson"]["explains"]
-        if self.pieces and isinstance(self.pieces[-1], LaterPiece) and text.startswith(explains):
+        self._asks_there = False
+        if self._explains(text):
             explained = _EXPLAINED.match(text)
             assert explained  # what is not empty has a paragraph
-            number, told = self.answers[-1]
-            self.answers[-1] = number, (*told, *self._numbers.prose(explained[0].strip()))
+            self._tell(self._numbers.prose(explained[0].strip()))
             text = text[explained.end() :].strip()
+            self._asks_there = not text
         for piece in _parted(text):
             self.pieces += self._numbers.prose(piece.text) if isinstance(piece, ProsePiece) else [piece]
 
-    def _cell(self, cell: source.CodeCell) -> None:
+    def _cell(self, cell: source.CodeCell, explained: bool) -> None:
+        """Add what a cell shows; what is ``explained`` with an answer is shown there."""
         if source.NOTEBOOK in cell.tags:
             return
         if source.SHOWN in cell.tags or source.STILL in cell.tags:
             self.pieces.append(CodePiece(cell.code))
         displayed = CellOutput() if source.STILL in cell.tags else self._session.run(cell)
-        if displayed.is_example:
+        if explained and not displayed.later:
+            self._tell(displayed.now)
+        elif displayed.is_example:
             self.pieces += self._numbers.example(displayed.now)
         else:
             self.pieces += (
@@ -147,6 +162,11 @@ class _Lesson:
             )
         if displayed.later:
             self._later(displayed.later)
+
+    def _tell(self, pieces: Iterable[Piece]) -> None:
+        """Add pieces to the last answer."""
+        number, told = self.answers[-1]
+        self.answers[-1] = number, (*told, *pieces)
 
     def _later(self, pieces: tuple[Piece, ...]) -> None:
         number = 1 + len(self.answers)

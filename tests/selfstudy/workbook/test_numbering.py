@@ -13,7 +13,7 @@ from coursework.rendering.renderer import renderer_of
 from coursework.selfstudy.workbook.binding import bound
 from coursework.selfstudy.workbook.lessons import lesson_text
 from coursework.selfstudy.workbook.numbering import BoxRule, LessonNumbers, boxes_of
-from coursework.sheets.book import BoxPiece, ProsePiece, TablePiece
+from coursework.sheets.book import BoxPiece, DrawnPiece, LaterPiece, ProsePiece, TablePiece
 
 TEXT = """A [rod](#index "rod, rigid") is rigid:
 
@@ -83,11 +83,29 @@ $$ r = 1 $$
 One.
 ```
 
+```python
+import coursework
+
+coursework.plot(("t", "s", [0, 1]), {"x": ("mm", [0, 1])}, lang="en")
+```
+
 **Explain.** Since it is one:
 
 $$ x = 1 $$
 
 On we go.
+
+**Predict.** And then?
+
+```answer
+Two.
+```
+
+**Explain.** Why not three?
+
+```answer
+It is the next.
+```
 
 ## 2. Two
 
@@ -120,9 +138,12 @@ def test_paper_names_the_place_and_the_page_of_a_link(small):
 
 def test_what_explains_a_prediction_stands_with_its_answer(small):
     lesson = lesson_text(coursework.open_course(small), "rods", "en")
-    ((_, answer),) = lesson.answers
-    assert [piece.text for piece in answer] == ["One.", "**Explain.** Since it is one:\n\n$$ x = 1 $$ (1.2)"]
-    assert any(getattr(piece, "text", "") == "On we go." for piece in lesson.pieces)
+    (_, (one, drawing, why)), (_, asked) = lesson.answers
+    assert (one.text, why.text) == ("One.", "**Explain.** Since it is one:\n\n$$ x = 1 $$ (1.2)")
+    assert isinstance(drawing, DrawnPiece), "it gives the answer away as well"
+    assert [piece.text for piece in asked] == ["Two.", "**Explain.** Why not three?", "It is the next."]
+    assert any(getattr(piece, "text", "").startswith("On we go.") for piece in lesson.pieces)
+    assert sum(isinstance(piece, LaterPiece) for piece in lesson.pieces) == 2
 
 
 def test_a_box_of_another_form_is_refused(small):
