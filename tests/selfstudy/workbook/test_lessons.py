@@ -62,7 +62,9 @@ def prints(told):
 
 def numbers(told):
     """The numbers that come out, whatever the sign of their decimals."""
-    printed = " ".join(p.text for _, answer in told.answers for p in answer if p.text.startswith("- "))
+    printed = " ".join(
+        p.text for _, answer in told.answers for p in answer if getattr(p, "text", "").startswith("- ")
+    )
     return sorted(re.findall(r"\d+(?:[.,]\d+)?", printed.replace(",", ".").replace("{.}", ".")))
 
 
