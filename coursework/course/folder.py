@@ -436,6 +436,19 @@ class Folder:
             raise BadCourse(f"the lesson {name} draws no figures: there is no {self.relative(path)}")
         return self._imported(path.relative_to(self.root).with_suffix("").parts, self.relative(path))
 
+    def book_module(self, name: str) -> ModuleType:
+        """Import a module that draws figures of the book, ``exercises/book/NAME.py``.
+
+        Raises
+        ------
+        BadCourse
+            There is none, or it cannot be imported.
+        """
+        path = self.book_place / f"{name}.py"
+        if not path.exists():
+            raise BadCourse(f"there is no {self.relative(path)}")
+        return self._imported(path.relative_to(self.root).with_suffix("").parts, self.relative(path))
+
     def _imported(self, steps: Sequence[str], source: str) -> ModuleType:
         dotted = ".".join((self._package, *steps)).removesuffix(".__init__")
         try:

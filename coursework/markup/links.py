@@ -11,11 +11,12 @@ from dataclasses import dataclass
 
 _LINK = re.compile(
     r"\[(?P<said>[^\[\]]+)\]\("
-    r"(?:(?P<kind>exercise|lesson):(?P<name>\w+)(?:#(?P<section>\d+))?|#index(?:\s+\"(?P<entry>[^\"]*)\")?)\)"
+    r"(?:(?P<kind>exercise|lesson):(?P<name>\w+)(?:#(?P<section>\d+))?|#(?P<mark>index|word|machine)(?:\s+\"(?P<entry>[^\"]*)\")?)\)"
 )
 _VERBATIM = re.compile(r"(```.*?```|`[^`\n]*`)", re.DOTALL)
 
 TERM = "term"
+WORD, MACHINE = "word", "machine"  #: words that an index has found in the text, for its own list each
 
 
 @dataclass(frozen=True)
@@ -23,7 +24,7 @@ class TextLink:
     """Link to an exercise or a lesson, or a term with its entry in the index."""
 
     said: str
-    kind: str  #: exercise, lesson or term
+    kind: str  #: exercise, lesson, term, or of what an index has found: word or machine
     name: str  #: of the exercise or lesson, or the entry
     section: int = 0
 
@@ -43,5 +44,6 @@ def links(text: str) -> tuple[TextLink, ...]:
 def _link(match: re.Match[str]) -> TextLink:
     text = " ".join(match["said"].split())
     if match["kind"] is None:
-        return TextLink(text, TERM, " ".join((match["entry"] or text).split()))
+        kind = TERM if match["mark"] == "index" else match["mark"]
+        return TextLink(text, kind, " ".join((match["entry"] or text).split()))
     return TextLink(text, match["kind"], match["name"], int(match["section"] or 0))

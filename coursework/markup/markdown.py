@@ -226,11 +226,17 @@ def _leads(node: SyntaxTreeNode) -> bool:
 
 #: What a link leads to that is no link: a term of the index, whose entry is the link's title.
 INDEX = "#index"
+#: What is found for an index and looks like any other word.
+FOUND = ("#word", "#machine")
 
 
 def _typst_link(href: str, title: str, inside: str) -> str:
     if href == INDEX:
         return f"#term({typst_string(title)}, {typst_string(bare_letters(title))})[{inside}];"
+    if href in FOUND:
+        return (
+            f'#indexed("{href[1:]}", {typst_string(title)}, {typst_string(bare_letters(title))})[{inside}];'
+        )
     if href.startswith("#") and title:  # a place of the book, with what paper calls it
         return f"#cited({typst_string(unquote(href[1:]))}, [{inside}], {typst_string(title)});"
     position = f"label({typst_string(unquote(href[1:]))})" if href.startswith("#") else typst_string(href)
@@ -316,6 +322,10 @@ def _html_reader(lang: str) -> MarkdownIt:
 
     def link(renderer: RendererHTML, tokens: Sequence, at: int, options: Any, env: Any) -> str:
         opening = next(t for t in reversed(tokens[: at + 1]) if t.type == "link_open")
+        if opening.attrs.get("href") in FOUND:
+            if tokens[at].nesting != 1:
+                return "</span>"
+            return f'<span id="{anchor(str(opening.attrs.get("title", "")))}">'
         if opening.attrs.get("href") != INDEX:
             return renderer.renderToken(tokens, at, options, env)
         if tokens[at].nesting != 1:

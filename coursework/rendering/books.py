@@ -14,7 +14,7 @@ from markupsafe import Markup
 from coursework.errors import bare_letters
 from coursework.language.typography import typeset
 from coursework.language.words import words
-from coursework.markup.links import TERM, TextLink, relinked
+from coursework.markup.links import MACHINE, TERM, WORD, TextLink, relinked
 from coursework.markup.markdown import INDEX, anchor
 from coursework.rendering import html, pdf, views
 from coursework.rendering.environment import render
@@ -36,6 +36,8 @@ def typst_source(folders: Sequence[Path], book: Book, paper: str = "a4", *, apar
             exercise.handout.exercise: _exercise(env, exercise, "typ.j2") for exercise in book.exercises
         }
     }
+    names["machines"] = _machines(book)
+    names["index_entries"] = {*book.terms, *(entry for part in book.front for entry in part.terms)}
     names["pieces"] = partial(_typst_pieces, env, book)
     names["exercises_of"] = partial(_own_exercises, book)
     body = Markup(render(env, "book/book.typ.j2", names))
@@ -43,6 +45,15 @@ def typst_source(folders: Sequence[Path], book: Book, paper: str = "a4", *, apar
     return render(
         env, "parts/page.typ.j2", names | {"bodies": [body], "printed": True, "heading": {"lang": book.lang}}
     )
+
+
+def _machines(book: Book) -> list[tuple[str, list[BookExercise]]]:
+    """Return the machines about which exercises of the book ask, with these."""
+    by_name = {exercise.handout.exercise: exercise for exercise in book.exercises}
+    listed = (
+        (one.entry, [by_name[name] for name in one.exercises if name in by_name]) for one in book.machines
+    )
+    return [(entry, exercises) for entry, exercises in listed if exercises]
 
 
 def _of_book(book: Book) -> dict[str, Any]:
@@ -69,6 +80,8 @@ def _typst_pieces(env: Environment, book: Book, lesson: LessonText, pieces: Sequ
     def write(link: TextLink) -> str:
         if link.kind == TERM:
             return f'[{link.said}]({INDEX} "{typeset(link.name, book.lang)}")'
+        if link.kind in (WORD, MACHINE):
+            return f'[{link.said}](#{link.kind} "{typeset(link.name, book.lang)}")'
         if link.name not in here[link.kind == "lesson"]:
             return link.said
         section = f"-{link.section}" if link.section else ""
@@ -159,6 +172,8 @@ def _solution(env: Environment, exercise: BookExercise, names: Mapping[str, Any]
 def _pages(book: Book) -> Iterator[BookPage]:
     book_words = words(book.lang)["book"]
     yield BookPage("index.html", book_words["contents"])
+    for part in book.front:
+        yield BookPage(f"book-{part.name}.html", part.title, part)
     for chapter in book.chapters:
         for section in chapter.sections:
             if section.lesson:
@@ -173,6 +188,8 @@ def _pages(book: Book) -> Iterator[BookPage]:
             yield BookPage(
                 f"summary-{chapter.number}.html", book_words["summary"].format(chapter.number), chapter
             )
+    for part in book.back:
+        yield BookPage(f"book-{part.name}.html", part.title, part)
 
 
 def _title_of(book: Book, lesson: str) -> str:
@@ -233,5 +250,9 @@ class LessonPages:
             is_first = link.name not in self._met
             self._met.add(link.name)
             return f'[{link.said}]({INDEX} "{link.name}")' if is_first else f"*{link.said}*"
+        if link.kind in (WORD, MACHINE):
+            is_first = link.name not in self._met
+            self._met.add(link.name)
+            return f'[{link.said}](#{link.kind} "{link.name}")' if is_first else link.said
         address = self._address(link)
         return f"[{link.said}]({address})" if address else link.said

@@ -13,7 +13,7 @@ from typing import Any
 from jinja2 import Environment
 from markupsafe import Markup
 
-from coursework.errors import BadStatement
+from coursework.errors import BadStatement, bare_letters
 from coursework.figures import Beginning, Figure, Picture
 from coursework.figures.text import SIZE
 from coursework.figures.writing import Letters
@@ -198,6 +198,7 @@ def environment_of(folders: tuple[Path, ...], lang: str) -> Environment:
         "raw_math": lambda tex: to_typst(tex, lang),
         "spoken_literal": lambda tex: markup.typst_string(spoken(tex, lang)),
         "literal": lambda text: markup.typst_string(str(text)),
+        "sort_key": lambda text: bare_letters(str(text)),
         "typed": markup.typst_typed,
         "drawing": _drawing,
     }

@@ -62,10 +62,15 @@ class DrawnPiece:
 
 @dataclass(frozen=True)
 class TablePiece:
-    """Table of a lesson, Markdown, with its number."""
+    """Table, Markdown, with its number; one of a page outside the lessons has none."""
 
     text: str
     number: str
+
+    @property
+    def is_long(self) -> bool:
+        """Whether it is set in two columns of a page."""
+        return self.text.count("\n") > _LONG
 
 
 @dataclass(frozen=True)
@@ -76,6 +81,23 @@ class BoxPiece:
     number: str
     title: str
     text: str
+
+
+@dataclass(frozen=True)
+class JointRow:
+    """Joint in its table: its symbol in perspective and in plan, then cells (Markdown)."""
+
+    perspective: Figure
+    plan: Figure
+    cells: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class JointsPiece:
+    """Table of joints with their symbols."""
+
+    head: tuple[str, ...]
+    rows: tuple[JointRow, ...]
 
 
 @dataclass(frozen=True)
@@ -111,6 +133,7 @@ Piece: TypeAlias = (
     | DrawnPiece
     | TablePiece
     | BoxPiece
+    | JointsPiece
     | LaterPiece
     | BlanksPiece
 )
@@ -121,12 +144,15 @@ class LessonText:
     """A lesson as a book prints it."""
 
     name: str
-    number: int  #: among the lessons of the course
+    number: (
+        int  #: among the lessons of the course; 0 for a page before the first chapter or after the last one
+    )
     lang: str
     title: str
     pieces: tuple[Piece, ...]
     answers: tuple[tuple[int, tuple[Piece, ...]], ...]  #: by their numbers, which :class:`LaterPiece` names
     terms: tuple[str, ...] = ()  #: entries of the index
+    words: tuple[str, ...] = ()  #: entries that the index has found in it
 
 
 @dataclass(frozen=True)
@@ -207,6 +233,31 @@ class SymbolRow:
 
 
 @dataclass(frozen=True)
+class TitlePage:
+    """What the title page says besides the title; empty where nothing is stated."""
+
+    author: str = ""
+    edition: str = ""
+    licence: str = ""
+
+
+@dataclass(frozen=True)
+class SeeEntry:
+    """Entry of the index that has no pages of its own, and the one to look at."""
+
+    entry: str
+    to: str
+
+
+@dataclass(frozen=True)
+class MachineEntry:
+    """Machine in its index, and the names of the exercises that ask about it."""
+
+    entry: str
+    exercises: tuple[str, ...]
+
+
+@dataclass(frozen=True)
 class Book:
     """A course as one book, in a language."""
 
@@ -215,6 +266,11 @@ class Book:
     seed: int
     chapters: tuple[BookChapter, ...]
     solved: bool  #: whether the solutions stand at its end, and its pages lead to them
+    title_page: TitlePage = TitlePage()
+    front: tuple[LessonText, ...] = ()  #: pages before the first chapter
+    back: tuple[LessonText, ...] = ()  #: pages after the last one
+    see: tuple[SeeEntry, ...] = ()
+    machines: tuple[MachineEntry, ...] = ()
 
     @property
     def exercises(self) -> tuple[BookExercise, ...]:
@@ -229,7 +285,7 @@ class Book:
         """The names of the lessons that have each entry of the index."""
         terms: dict[str, tuple[str, ...]] = {}
         for lesson in self.lessons:
-            for entry in lesson.terms:
+            for entry in dict.fromkeys((*lesson.terms, *lesson.words)):
                 terms[entry] = (*terms.get(entry, ()), lesson.name)
         return terms
 
@@ -252,6 +308,7 @@ class Book:
         return tuple(SymbolRow(*row, tuple(symbols[row])) for row in ordered)
 
 
+_LONG = 60  #: rows of a table that takes two columns
 _MEASURED = ("number", "integer", "angle")  #: the kinds of a quantity
 _EXPRESSION = re.compile(r"[+/=]|(?<!dot) ")  #: a symbol that is none: a sum, a quotient, two points
 _CLAUSE = re.compile(r"^(.*?)(?:[.,;:](?=\s|$)|$)", re.DOTALL)

@@ -14,7 +14,9 @@ from coursework.course.variant import Variant
 from coursework.errors import BadCourse, BadInput
 from coursework.issuing.issuing import distinct_variants
 from coursework.language.words import words
+from coursework.selfstudy.workbook.concordance import entries_of, machine_entries, see_entries, with_entries
 from coursework.selfstudy.workbook.lessons import lesson_text
+from coursework.selfstudy.workbook.matter import matter_of, title_page
 from coursework.selfstudy.workbook.summaries import summary_of
 from coursework.sheets.answer_sheet import answer_sheet
 from coursework.sheets.book import Book, BookChapter, BookExercise, BookSection
@@ -73,7 +75,20 @@ def bound(
             )
     wanted = [chapter for chapter in results if not chapters or chapter.number in chapters]
     created = tuple(_chapter(course, chapter, lang, seed, advance) for chapter in wanted)
-    return Book(lang, course.folder.title(lang), seed, created, solved)
+    folder = course.folder
+    front, back = (matter_of(folder, lang, place) for place in ("front", "back"))
+    return Book(
+        lang,
+        folder.title(lang),
+        seed,
+        created,
+        solved,
+        title_page(folder, lang),
+        front,
+        back,
+        see_entries(folder, lang),
+        machine_entries(folder, lang),
+    )
 
 
 def pieces_of(course: Course[Any]) -> int:
@@ -98,9 +113,11 @@ def _chapter(
 ) -> BookChapter:
     sections = []
     count = 0
+    sought = entries_of(course.folder, lang)
     for placed in chapter.sections:
         lesson = lesson_text(course, placed.lesson, lang) if placed.lesson else None
         if lesson:
+            lesson = with_entries(lesson, sought)
             advance()
         exercises = []
         for name in placed.exercises:

@@ -141,7 +141,7 @@ class _Lesson:
             self._tell(self._numbers.prose(explained[0].strip()))
             text = text[explained.end() :].strip()
             self._asks_there = not text
-        for piece in _parted(text):
+        for piece in parted(text):
             self.pieces += self._numbers.prose(piece.text) if isinstance(piece, ProsePiece) else [piece]
 
     def _cell(self, cell: source.CodeCell, explained: bool) -> None:
@@ -174,7 +174,7 @@ class _Lesson:
         self.answers.append((number, pieces))
 
 
-def _parted(text: str) -> Iterator[Piece]:
+def parted(text: str) -> Iterator[Piece]:
     """Yield the running text, with its headings as separate pieces."""
     end = 0
     for head in _HEAD.finditer(text):

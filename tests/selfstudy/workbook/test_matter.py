@@ -1,0 +1,94 @@
+"""Pages before the first chapter and after the last one, and the index: terms, words that are found, persons, machines."""
+
+from __future__ import annotations
+
+import pytest
+
+import coursework
+from coursework.errors import BadCourse
+from coursework.markup.links import TERM, links
+from coursework.selfstudy.workbook import lesson_source as source
+from coursework.selfstudy.workbook.concordance import (
+    SoughtEntry,
+    entries_of,
+    machine_entries,
+    see_entries,
+    with_entries,
+)
+from coursework.selfstudy.workbook.matter import matter_of, title_page
+from coursework.sheets.book import BoxPiece, HeadPiece, LessonText, ProsePiece
+
+LESSON = LessonText(
+    "x",
+    1,
+    "en",
+    "X",
+    (
+        HeadPiece("Joints", 1, 1),
+        ProsePiece("The joint graphs of a [joint](#index), `joint`, $joint$; two joints; no jointed bar."),
+        BoxPiece("rule", "1.1", "", "A joint graph. Watt said."),
+    ),
+    (),
+)
+
+
+def test_words_of_the_index_are_marked_where_a_lesson_has_them_first():
+    sought = (
+        SoughtEntry("word", "joint", ("joint",)),
+        SoughtEntry("word", "joint graph", ("joint graph",)),
+        SoughtEntry("word", "Watt, James", ("Watt",)),
+        SoughtEntry("machine", "pump", ("pump",)),
+    )
+    found = with_entries(LESSON, sought)
+    assert found.words == ("joint graph", "joint", "Watt, James")
+    assert found.pieces[1].text == (
+        'The [joint graphs](#word "joint graph") of a [joint](#index), `joint`, $joint$; '
+        'two [joints](#word "joint"); no jointed bar.'
+    )
+    assert found.pieces[2].text == 'A joint graph. [Watt](#word "Watt, James") said.'
+
+
+def test_the_index_has_four_hundred_entries_and_references_lead_to_them(course):
+    folder, faults = course.folder, []
+    for lang in folder.languages:
+        met, sought = set(), entries_of(folder, lang)
+        for name in folder.lessons:
+            text = (folder.lesson_place / f"{name}.{lang}.md").read_text("utf-8")
+            prose = tuple(
+                ProsePiece(b.text) for b in source.blocks(text, name) if isinstance(b, source.LessonProse)
+            )
+            marked = with_entries(LessonText(name, 1, lang, name, prose, ()), sought)
+            met |= {*(link.name for link in links(text) if link.kind == TERM), *marked.words}
+        see = see_entries(folder, lang)
+        faults += [f"{lang}: {one.entry} leads to {one.to!r}" for one in see if one.to not in met]
+        machines = [
+            one.entry for one in machine_entries(folder, lang) if not one.exercises and one.entry not in met
+        ]
+        faults += [f"{lang}: no lesson speaks of {one}" for one in machines]
+        people = {one.entry for one in sought if one.list == "word" and ", " in one.entry}
+        if len(met | people) + len(see) + len(folder.names) < 400:
+            faults.append(f"{lang}: {len(met | people)} entries and {len(see)} references")
+    assert faults == []
+
+
+def test_the_pages_of_the_book_are_there_in_every_language(course):
+    folder = course.folder
+    parts = {
+        lang: [*matter_of(folder, lang, "front"), *matter_of(folder, lang, "back")]
+        for lang in folder.languages
+    }
+    names = {lang: [(part.name, len(part.pieces)) for part in told] for lang, told in parts.items()}
+    assert names["en"] == names["fr"]
+    assert all(part.title and part.pieces for told in parts.values() for part in told)
+    assert all(title_page(folder, lang).author for lang in folder.languages)
+    for name in {exercise for one in machine_entries(folder, "en") for exercise in one.exercises}:
+        assert name in folder.names
+
+
+def test_a_page_that_is_missing_is_told(small_course):
+    place = small_course / "exercises/book"
+    place.mkdir()
+    (place / "matter.toml").write_text('front = ["preface"]\n', "utf-8")
+    folder = coursework.open_course(small_course).folder
+    with pytest.raises(BadCourse, match=r"names 'preface': exercises/book/preface\.en\.md is missing"):
+        matter_of(folder, "en", "front")
