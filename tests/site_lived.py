@@ -134,6 +134,7 @@ def shown(site: Lived) -> list[Shown]:
         (f"{of_class}/scans", f"/desk/{site.done}/scans"),
         (f"{of_class}/scans/queue", f"/desk/{site.done}/scans/queue"),
         (f"{of_class}/regrade", f"/desk/{site.done}/regrade"),
+        (f"{of_class}/after", f"/desk/{site.done}/after"),
     )
     nobody = (
         ("/offline", "/offline"),

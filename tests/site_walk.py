@@ -196,7 +196,7 @@ def fillings(site: Filled) -> dict[str, Filling]:
     )  # fmt: skip
     of_class = (
         "", "/figure", "/queue", "/queue/watch", "/news", "/student", "/questions", "/question", "/report", "/report.pdf", "/files",
-        "/scans", "/scans/queue", "/scans/picture", "/scans/crop", "/answers", "/roster", "/gradebook", "/feedback", "/rejected", "/regrade", "/changes.csv",
+        "/scans", "/scans/queue", "/scans/picture", "/scans/crop", "/answers", "/roster", "/gradebook", "/feedback", "/rejected", "/regrade", "/after", "/changes.csv",
     )  # fmt: skip
     of_publishing = (
         "", "/publish", "/unpublish", "/extend", "/roster", "/make-up", "/preview", "/as/{person:int}", "/issued.json", "/sheets",

@@ -156,6 +156,7 @@ class ClassState:
             self.adjusted, self.sheets.rows_in, self.sheets.blanks, sheets.rejected, sheets.warnings
         )
         book.charged = self.charged
+        book.aside = [row.row for row in self.rejected if not row.waits]
         both: dict[SheetKey, Graded | str] = {**self.graded, **self.faults}
         for graded in list(rejecting(sheets, ((p, both[p]) for p in sheets.sheets if p in both))):
             book.add(graded)

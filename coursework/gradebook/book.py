@@ -119,6 +119,7 @@ class Gradebook:
     charged: Mapping[Sitting, float] = field(
         default_factory=dict
     )  #: penalties of late submissions, as shares of the points
+    aside: Collection[Rejected] = ()  #: rejected rows that a person has put aside: nothing waits in them
 
     @property
     def marked(self) -> int:
@@ -161,7 +162,7 @@ class Gradebook:
         """Return the parts answered in rejected rows alone, by sitting and by variant."""
         issued = self.issued
         unread: dict[Sitting, dict[tuple[str, int], set[str]]] = {}
-        for row in (rejected.row for rejected in self.rejected):
+        for row in (one.row for one in self.rejected if not self.aside or one not in self.aside):
             student, exercise = issued.student(row.get("student", "")), row.get("exercise", "")
             if not student or not row.get("answer", "").strip():
                 continue

@@ -78,7 +78,8 @@ def sign(line: FeedbackLine) -> str:
     """``full``, ``part``, ``none`` or ``wait``: which share of its points an answer has."""
     if line.verdict in WAITING:
         return "wait"
-    if line.points >= line.out_of:
+    counts = line.out_of or line.points or line.verdict in ("correct", "accepted", "follow_through")
+    if line.points >= line.out_of and counts:
         return "full"
     return "part" if line.points > 0 else "none"
 

@@ -16,6 +16,7 @@ from starlette.routing import Route as StarletteRoute
 
 from coursework.site import health
 from coursework.site.desk import (
+    after_exam,
     class_page,
     files,
     overview,
@@ -57,6 +58,7 @@ ROUTES: tuple[Route, ...] = (
     *links_page.ROUTES,
     *connecting.ROUTES,
     *queue.ROUTES,
+    *after_exam.ROUTES,
     *assignments.ROUTES,
     *publishing.ROUTES,
     *mechanisms_page.ROUTES,

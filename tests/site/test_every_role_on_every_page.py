@@ -59,7 +59,7 @@ WHO = {
         for end in ("/queue", "/student", "/rejected", "/gradebook", "/scans/queue")
     },
     "/desk/{assignment:int}/scans": (ASSISTANTS, INSTRUCTORS),
-    **{f"/desk/{{assignment:int}}{end}": (INSTRUCTORS, INSTRUCTORS) for end in ("/answers", "/roster", "/regrade")},
+    **{f"/desk/{{assignment:int}}{end}": (INSTRUCTORS, INSTRUCTORS) for end in ("/answers", "/roster", "/regrade", "/after")},
     "/desk/{assignment:int}/changes.csv": (INSTRUCTORS, None), "/desk/issued": (INSTRUCTORS, INSTRUCTORS),
     "/desk/lti": (INSTRUCTORS, None), "/mechanisms": (INSTRUCTORS, None), "/mechanisms/{name}": (INSTRUCTORS, INSTRUCTORS), "/desk/assignments": (INSTRUCTORS, None),
     "/desk/assignments/new": (INSTRUCTORS, INSTRUCTORS), "/desk/assignments/dealing/{token}": (INSTRUCTORS, None),

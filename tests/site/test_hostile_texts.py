@@ -75,7 +75,7 @@ class Hostile(Class):
         home, first = f"/desk/{self.number}", self.variant.parts[0].id
         return [
             "/desk", "/desk/people", "/desk/audit", "/desk/assignments", home, f"{home}/questions", f"{home}/files", f"{home}/report",
-            f"{home}/regrade", f"{home}/queue", f"{home}/queue?why=rejected", f"/desk/assignments/{self.number}",
+            f"{home}/regrade", f"{home}/after", f"{home}/queue", f"{home}/queue?why=rejected", f"/desk/assignments/{self.number}",
             f"{home}/question?{urlencode({'exercise': EXERCISE, 'part': first})}",
             f"/desk/assignments/{self.number}/preview", "/desk/assignments/new",
         ]  # fmt: skip

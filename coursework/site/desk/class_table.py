@@ -20,6 +20,7 @@ from coursework.database.class_summaries import (
 )
 from coursework.database.instructor_queries import AssignmentOverview, Stamp, listed_assignments, stamp
 from coursework.errors import BadInput
+from coursework.gradebook.adjustments import NEUTRAL, SPARED
 from coursework.gradebook.book import Result
 from coursework.gradebook.columns import own_columns
 from coursework.gradebook.graded_sheet import Graded
@@ -126,7 +127,8 @@ def _means(now: ClassState, table_rows: Sequence[ClassRow]) -> list[str]:
     means = []
     for column, question in enumerate(now.questions):
         had = [row.cells[column].points for row in table_rows if row.cells[column].sign]
-        means.append(f"{100 * sum(had) / (len(had) * most[question]):.0f}" if had else "")
+        counts = had and adjustments.statuses.get(question) not in (NEUTRAL, SPARED)
+        means.append(f"{100 * sum(had) / (len(had) * most[question]):.0f}" if counts else "")
     return means
 
 

@@ -128,11 +128,13 @@ def steps(out_of: float) -> tuple[float, ...]:
 
 
 def sign_of(mark: Mark) -> str:
-    """Return the state of an answer for a table: ``full``, ``part``, ``none``, ``wait`` or ``missing``."""
+    """Return the state of an answer for a table: ``full``, ``part``, ``none``, ``wait`` or ``missing``; empty where it does not count."""
     if mark.verdict == "missing":
         return "missing"
     if mark.verdict in ("unreadable", "to_mark"):
         return "wait"
+    if not mark.out_of and not mark.points:
+        return ""  # it does not count
     if mark.points >= mark.out_of:
         return "full"
     return "part" if mark.points > 0 else "none"

@@ -167,7 +167,7 @@ def _line(
     return AnswerLine(
         question_card(now.course, now.issued, machine, part, request.lang), number, in_class if in_class != number else "",
         machine.lines[part], mark, sign_of(mark), lines,
-        now.decisions.standing(machine, machine.lines[part]) is not None, steps(mark.out_of),
+        now.decisions.standing(machine, machine.lines[part]) is not None, steps(machine.lines[part].out_of),
     )  # fmt: skip
 
 

@@ -1,0 +1,158 @@
+"""Page of the evening after an exam: what is left, what a change of a question or of the scale makes of the marks."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from starlette.responses import Response
+
+from coursework.database.class_state import ClassState
+from coursework.database.decisions import decide
+from coursework.database.permissions import Permission
+from coursework.errors import BadInput
+from coursework.gradebook import after_words
+from coursework.gradebook.adjustments import (
+    ADJUSTMENTS,
+    CURVE,
+    FULL,
+    ON_SCALE,
+    PRICE,
+    STEP,
+    TOLERANCE,
+    WEIGHT,
+)
+from coursework.gradebook.after import Exam, Preview, step, undoing
+from coursework.gradebook.decisions import ACCEPTED, GIVEN, Decision
+from coursework.language.numbers import localise, typed_number
+from coursework.language.words import words
+from coursework.messages import localised
+from coursework.site.desk.class_cache import class_here, class_now, class_page_of
+from coursework.site.desk.question_cards import moment
+from coursework.site.frame.requests import Request, Route
+
+OFFERED = (*ADJUSTMENTS, ACCEPTED, GIVEN)  #: changes that the form offers
+_VALUED = (WEIGHT, TOLERANCE, PRICE, FULL, STEP, GIVEN)  #: changes with a number
+_ANSWERED = (PRICE, CURVE, ACCEPTED, GIVEN)  #: changes with a text
+_LONGEST = 500  #: characters of a text
+_FIELDS = ("kind", "question", "points", "answer", "why")
+_MOST_ROWS = 400  #: changed marks in the table
+
+
+def exam_of(now: ClassState) -> Exam:
+    """Return the exam of a class."""
+    rejected = tuple(row.row for row in now.rejected if row.waits)
+    machine = tuple(now.machine.values())
+    return Exam(now.course, now.issued, machine, now.decisions, rejected, now.charged, now.measures)
+
+
+def after_exam(request: Request) -> Response:
+    """Return the page; with a change in the address its preview; a form confirms it, puts non-answers away, or takes the
+    last step back."""
+    now = class_here(request)
+    if not request.is_post:
+        return _page(request, now, {name: request.query_params.get(name, "") for name in _FIELDS})
+    message, fields = "", dict.fromkeys(_FIELDS, "")
+    try:
+        message = _done(request, exam_of(now))
+    except BadInput as fault:
+        message = localised(fault)
+        fields = {name: request.form.text(name) for name in _FIELDS}
+    return _page(request, class_now(request.site, now.about.id), fields, message)
+
+
+def _done(request: Request, exam: Exam) -> str:
+    """Keep what the form asks for; return the message."""
+    texts, by = words(request.lang)["after"], request.actor.name
+    asked = request.form.text("do")
+    if asked == "put_away":
+        kept, done = exam.put_away(by, texts["put_away_why"]), texts["put_away"]
+    elif asked == "undo" and exam.decisions.standing_steps:
+        kept = [undoing(exam.decisions.standing_steps[-1], by)]
+        done = after_words.step_text(exam, kept[0], request.lang)
+    elif asked == "confirm":
+        kept = [_step({name: request.form.text(name) for name in _FIELDS}, by)]
+        exam.preview(kept)  # one that makes no sense stops here
+        done = after_words.step_text(exam, kept[0], request.lang)
+    else:
+        return ""
+    number = request.path_params["assignment"]
+    with request.site.store.begin() as connection:
+        decide(connection, number, kept)
+        about = {"exercise": kept[0].exercise, "part": kept[0].part} if kept and asked != "put_away" else {}
+        request.note(
+            connection,
+            "adjustment",
+            assignment=number,
+            kind=kept[0].kind if kept else "",
+            count=len(kept),
+            **about,
+        )
+    return str(texts["done"]).format(done)
+
+
+def _step(fields: Mapping[str, str], by: str) -> Decision:
+    """Return the step that the fields of a form state.
+
+    Raises
+    ------
+    BadInput
+        They state none.
+    """
+    kind = fields["kind"]
+    if kind not in OFFERED:
+        raise BadInput("no change is chosen")
+    exercise, _, part = fields["question"].partition("/") if kind not in ON_SCALE else ("", "", "")
+    points = typed_number(fields["points"].strip()) if kind in _VALUED else None
+    if points is not None and points != points:
+        raise BadInput("this change needs a number: points, margins, a share or a step")
+    answer = fields["answer"].strip()[:_LONGEST] if kind in _ANSWERED else None
+    if kind in _ANSWERED and not answer:
+        raise BadInput("this change needs a text: the answer, the verdict or the curve")
+    return step(kind, exercise, part, points, answer, fields["why"].strip()[:_LONGEST], by)
+
+
+def _page(request: Request, now: ClassState, fields: Mapping[str, str], message: str = "") -> Response:
+    exam, lang = exam_of(now), request.lang
+    preview: Preview | None = None
+    if fields["kind"]:
+        try:
+            change = _step(fields, request.actor.name)
+            preview = exam.preview([change])
+            fields = {**fields, "text": after_words.step_text(exam, change, lang)}
+        except BadInput as fault:
+            message = message or localised(fault)
+    current = exam.distribution()
+    steps = exam.decisions.standing_steps
+    names: dict[str, Any] = {
+        "exam": exam,
+        "fields": fields,
+        "told": message,
+        "preview": preview,
+        "current": current,
+        "bins": after_words.bins(current, lang),
+        "steps": [
+            (moment(one.made, lang) if one.made else "", one, after_words.step_text(exam, one, lang))
+            for one in steps
+        ],
+        "offered": OFFERED,
+        "number": lambda value: after_words.number(value, lang),
+        "share": lambda value: localise(f"{value:.2f}", lang),
+        "points_text": lambda question: after_words.points_text(question, lang),
+        "counting_text": lambda question: after_words.counting_text(question, lang),
+        "verdicts": _verdicts(exam),
+        "most_rows": _MOST_ROWS,
+        "most": max((*current.counts, *(preview.now.counts if preview else ())), default=0),
+    }
+    return class_page_of(request, now, "site/instructor/after", "after", **names)
+
+
+def _verdicts(exam: Exam) -> list[str]:
+    """Return the verdicts of the class whose price may change."""
+    names = {line.verdict for graded in exam.machine for line in graded.lines.values()}
+    return sorted(
+        name for name in names if name.startswith(("slip", "mistake", "follow", "missing_u", "wrong_u"))
+    )
+
+
+ROUTES = (Route("/desk/{assignment:int}/after", after_exam, Permission.MARKS_REGRADE, takes_forms=True),)

@@ -1,0 +1,96 @@
+"""The page of the evening after an exam: a change is seen before it counts, kept with who made it, and taken back."""
+
+import re
+
+import pytest
+from desk_class import EXERCISE, STUDENTS, DeskClass
+from site_people import TEACHER
+
+from coursework.database.decisions import read_decisions
+from coursework.site.desk.class_cache import class_now
+
+QUESTION = f"{EXERCISE}/rA"
+
+
+@pytest.fixture
+def desk(tmp_path):
+    found = DeskClass(f"sqlite:///{tmp_path}/desk.db", {})
+    right, wrong = found.at_margin("rA", 0.1), "777"
+    written = {name: {"rA": right if k < 3 else wrong} for k, name in enumerate(STUDENTS)}
+    written["Ada"]["theta4"] = "pas su"
+    written["Bo"]["theta4"] = "12 or 13"
+    found.hand_in(written)
+    return found
+
+
+def steps_of(desk):
+    with desk.site.store.reading() as connection:
+        return read_decisions(connection, desk.number).standing_steps
+
+
+def points(desk):
+    return {name: (r.points, r.out_of) for name, r in class_now(desk.site, desk.number).results.items()}
+
+
+def test_a_change_is_previewed_kept_and_taken_back(desk):
+    before = points(desk)
+    asked = {"kind": "weight", "question": QUESTION, "points": "9", "why": "announced <b>so</b>"}
+    page = desk.page(TEACHER, "/after", **asked)
+    assert "Question 1.1: worth 9 points" in page.text
+    assert "Rise: 3" in page.text
+    assert "<b>so" not in page.text
+    assert (points(desk), steps_of(desk)) == (before, ())
+    browser = desk.browser(TEACHER)
+    reply = browser.fill(f"/desk/{desk.number}/after", {"do": "confirm", **asked})
+    assert "Kept. Question 1.1: worth 9 points" in reply.text
+    (step,) = steps_of(desk)
+    assert (step.student, step.kind, step.points, step.by, step.reason) == (
+        "",
+        "weight",
+        9,
+        TEACHER,
+        asked["why"],
+    )
+    now = points(desk)
+    assert now["Ada"][1] == now["Flo"][1] > before["Ada"][1]
+    assert now["Ada"][0] - before["Ada"][0] == now["Ada"][1] - before["Ada"][1]
+    assert now["Flo"][0] == before["Flo"][0]
+    browser.fill(f"/desk/{desk.number}/after", {"do": "undo"})
+    assert (points(desk), steps_of(desk)) == (before, ())
+
+
+def test_provisional_marks_are_named_and_left_out_and_non_answers_put_away(desk):
+    page = desk.page(TEACHER, "/after", lang="fr")
+    assert "Illisibles" in page.text
+    assert "provisoire" in desk.page(TEACHER, lang="fr").text
+    assert "provisional" in desk.page(TEACHER, "/files/summary.csv").text.splitlines()[0]
+    browser = desk.browser(TEACHER)
+    book = b"Student,ID,SIS User ID,SIS Login ID,Section,week3 (1)\nAda,1,4000,ada,A,\nCy,3,4002,cy,A,\n"
+    sent = {"platform": "canvas", "item": "week3", "score": "points"}
+    reply = browser.fill(f"/desk/{desk.number}/gradebook", sent, files={"template": ("book.csv", book)})
+    assert re.search(r"2 provisional marks left out.*Ada, Bo", reply.text)
+    reply = browser.fill(f"/desk/{desk.number}/after", {"do": "put_away"})
+    assert "Put them away" in reply.text
+    provisional = [name for name, result in class_now(desk.site, desk.number).results.items() if result.open]
+    assert provisional == ["Bo"]
+
+
+def test_a_change_that_makes_no_sense_changes_nothing(desk):
+    browser = desk.browser(TEACHER)
+    for asked in (
+        {"kind": "weight", "question": QUESTION, "points": "x"},
+        {"kind": "weight", "question": "elsewhere/rA", "points": "2"},
+        {"kind": "withdrawn", "question": QUESTION},
+        {"kind": "price", "question": QUESTION, "points": "3", "answer": "slip"},
+        {"kind": "curve", "answer": "5:1 2:9"},
+    ):
+        assert desk.page(TEACHER, "/after", **asked).status_code == 200
+        assert browser.fill(f"/desk/{desk.number}/after", {"do": "confirm", **asked}).status_code == 200
+    assert steps_of(desk) == ()
+
+
+def test_a_forged_form_changes_nothing(desk):
+    browser = desk.browser(TEACHER)
+    asked = {"do": "confirm", "kind": "neutral", "question": QUESTION}
+    assert browser.post(f"/desk/{desk.number}/after", data=asked).status_code == 403
+    assert steps_of(desk) == ()
