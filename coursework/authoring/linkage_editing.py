@@ -8,7 +8,7 @@ from collections.abc import Collection, Mapping, Sequence
 from typing import Any, NamedTuple
 
 from coursework.linkages.compiled import CompiledLinkage
-from coursework.linkages.linkage_file import GROUND
+from coursework.linkages.entries import GROUND
 
 SPREAD, STEP = 0.2, 5.0  #: of a length that varies: its share to both sides, and its step in mm
 _LISTS = ("positions", "velocities", "accelerations", "polygon", "instant_centres")

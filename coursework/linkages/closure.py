@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from functools import lru_cache
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -37,7 +38,7 @@ def turns_round(
     -------
     True or False, of the broadcast shape of the values: 180 positions of a turn are tried.
     """
-    graph = Graph({f.__name__: f for f in functions()})
+    graph = _graph(tuple(functions()))
     shape = np.broadcast_shapes(*(np.shape(v) for v in values.values())) if values else ()
     size = int(np.prod(shape, dtype=int))
     flat = {n: np.repeat(np.ravel(np.broadcast_to(v, shape)), _STEPS) for n, v in values.items()}
@@ -66,10 +67,15 @@ def reference_values(
     -------
     Their values by name.
     """
-    graph = Graph({f.__name__: f for f in functions()})
+    graph = _graph(tuple(functions()))
     wanted = tuple(n for n in names if n in graph.names)
     found = graph.evaluate(wanted, {n: v for n, v in given.items() if n in graph.leaves}) if wanted else {}
     return {n: found.get(n, given.get(n)) for n in names}
+
+
+@lru_cache(maxsize=64)
+def _graph(functions: tuple[Callable[..., Any], ...]) -> Graph:
+    return Graph({f.__name__: f for f in functions})
 
 
 class SlideTrack(NamedTuple):

@@ -5,7 +5,6 @@ from __future__ import annotations
 import linecache
 import os
 import sys
-import tomllib
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
 from pathlib import Path
@@ -13,18 +12,12 @@ from types import ModuleType
 
 from coursework.errors import BadInput, CourseworkError
 from coursework.linkages.drawing import FigureWriter
+from coursework.linkages.entries import GROUND, GivenEntry, LinkageFile, Place
 from coursework.linkages.exact_loops import keep_digits
 from coursework.linkages.expressions import ExpressionReader, QuantityExpression
 from coursework.linkages.formulas import FormulaWriter
 from coursework.linkages.groups import Dyad
-from coursework.linkages.linkage_file import (
-    GROUND,
-    GivenEntry,
-    LinkageFile,
-    Place,
-    author_faults,
-    read_linkage,
-)
+from coursework.linkages.linkage_file import author_faults, read_linkage
 from coursework.linkages.loop_chains import vector_code
 from coursework.linkages.points import Quantity, names_in
 from coursework.linkages.questions import QuestionWriter
@@ -83,7 +76,8 @@ class CompiledLinkage:
         figure = FigureWriter(self.formulas)
         _ = self.questions  # which add their quantities
         conditions, constants = self._constraints()
-        wanted = [*names_in(figure.code.replace("\n", " ")), *self._turns]
+        drawn = names_in(figure.code.replace("\n", " "))
+        wanted = [*drawn, *self._turns]
         helpers = [q for q in self.formulas.transitive(wanted) if q.name not in self.linkage.given]
         chains = [f"{n} = {code}" for n, code in self.formulas.constants.items()]
         pieces = [
@@ -93,7 +87,7 @@ class CompiledLinkage:
             *(_plain(q) for q in helpers),
             constants,
             *(code for _, code in conditions),
-            f"def figure({', '.join(names_in(figure.code.replace(chr(10), ' ')))}):\n    return {figure.code}",
+            f"def figure({', '.join(drawn)}):\n    return {figure.code}",
             self._statement(
                 [*(q.name for q in helpers), *(["crank_turns"] if constants else [])],
                 [name for name, _ in conditions],
@@ -174,7 +168,7 @@ class CompiledLinkage:
             },
             {"is_crank": self._is_crank, "transmission_angle": self._transmission_angle},
         )
-        for number, text in enumerate(self._required()):
+        for number, text in enumerate(linkage.required):
             try:
                 found = reader.condition(text)
             except BadInput:
@@ -216,16 +210,6 @@ class CompiledLinkage:
     def _leaves(self, names: tuple[str, ...]) -> list[str]:
         needed = self.formulas.transitive(names)
         return list(dict.fromkeys(n for q in needed for n in q.needs if n not in self.formulas.quantities))
-
-    def _required(self) -> list[str]:
-        required = tomllib.loads(self.linkage.source).get("given", {}).get("require", [])
-        required = [required] if isinstance(required, str) else required
-        if not isinstance(required, list) or not all(isinstance(r, str) for r in required):
-            raise self.linkage.refused(
-                ("given", "require"),
-                Message('require = ["r2 < r4", "is_crank(2)"]; found {required!r}', required=required),
-            )
-        return required
 
     def _is_crank(self, *arguments: str) -> QuantityExpression:
         if arguments != (self.linkage.driver,):

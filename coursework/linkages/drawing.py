@@ -5,8 +5,8 @@ from __future__ import annotations
 from cmath import phase
 from itertools import pairwise
 
+from coursework.linkages.entries import GROUND, SlideEntry
 from coursework.linkages.formulas import FormulaWriter
-from coursework.linkages.linkage_file import GROUND, SlideEntry
 from coursework.linkages.points import middle_value
 from coursework.linkages.terms import Heading
 

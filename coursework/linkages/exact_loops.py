@@ -8,9 +8,9 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+from coursework.linkages.entries import GROUND, SlideEntry
 from coursework.linkages.formulas import FormulaWriter
 from coursework.linkages.groups import Dyad
-from coursework.linkages.linkage_file import GROUND, SlideEntry
 from coursework.linkages.points import Arm
 from coursework.linkages.terms import Heading, Plane, Sum
 

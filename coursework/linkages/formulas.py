@@ -5,14 +5,14 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from coursework.linkages.groups import Dyad, Group, HigherGroup, Wheel
-from coursework.linkages.higher_groups import HigherGroupWriter
-from coursework.linkages.linkage_file import (
+from coursework.linkages.entries import (
     AssemblyEntry,
     LinkageFile,
     SlideEntry,
 )
-from coursework.linkages.points import Arm, UsualMistake, local_plane, over, rotated
+from coursework.linkages.groups import Dyad, Group, HigherGroup, Wheel
+from coursework.linkages.higher_groups import HigherGroupWriter
+from coursework.linkages.points import Arm, Track, UsualMistake, local_plane, over, rotated
 from coursework.linkages.terms import Heading, Plane, Sum
 from coursework.messages import Message
 
@@ -111,23 +111,8 @@ class FormulaWriter(HigherGroupWriter):
         gap = self.at(end) - self.at(start)
         length, turn = f"d_{start}{end}", f"phi_{start}{end}"
         if turn not in self.quantities:
-            words = {"P": start, "Q": end}
-            self.write(
-                length,
-                f"sqrt(({gap.x.code})**2 + ({gap.y.code})**2)",
-                "mm",
-                "distance",
-                f"{start}{end}",
-                words=words,
-            )
-            self.write(
-                turn,
-                f"atan2({gap.y.code}, {gap.x.code})",
-                "deg",
-                "direction",
-                rf"\varphi_{{{start}{end}}}",
-                words=words,
-            )
+            symbols = f"{start}{end}", rf"\varphi_{{{start}{end}}}"
+            self.write_polar((length, turn), gap, ("distance", "direction"), symbols, {"P": start, "Q": end})
         return length, turn
 
     def _rrr(self, group: Dyad) -> None:
@@ -221,7 +206,8 @@ class FormulaWriter(HigherGroupWriter):
         assert isinstance(slide, SlideEntry)
         p, q = group.p, group.q
         arm = self.arm(p, P, B)
-        placed, base, sign, heading = self.track(slide, q, B)
+        track = self.track(slide, q, B)
+        placed, base, sign, heading = track
         words = {"P": P, "B": B, "p": p, "q": q, "guide": placed, "s": slide.distance}
         rise = self.at(P) - base
         height = self.write(f"h_{B}", rise.across(heading).code, "mm", "height", f"h_{{{B}}}", words=words)
@@ -239,8 +225,7 @@ class FormulaWriter(HigherGroupWriter):
             slide.distance, run if sign > 0 else f"-({run})", "mm", "slide_rrp", self._slide_symbol(slide), words=words,
             stable=f"{'' if sign > 0 else '-'}(({point} - {start}) * np.conj({unit})).real",
         )  # fmt: skip
-        there = base + Plane.polar(Sum.of(distance), heading).times(sign=sign)
-        self._write_end(B, there, words, point)
+        self._write_end(B, track.moved(base, distance), words, point)
         away = self.at(B) - self.at(P)
         self._write_turn(
             p, f"atan2({away.y.code}, {away.x.code})", arm, arm.heading - self.heading(p), P, point, "turn_by_ends",
@@ -248,7 +233,7 @@ class FormulaWriter(HigherGroupWriter):
         )  # fmt: skip
         self._finish_rod(p, P)
         self._finish_rod(q, B)
-        self._rates_rrp(words, arm, sign, heading, placed, distance)
+        self._rates_rrp(words, arm, track, distance)
 
     def _write_end(self, point: str, there: Plane, words: Mapping[str, str], hidden: str) -> None:
         for axis, component, half in (("x", there.x, "real"), ("y", there.y, "imag")):
@@ -263,9 +248,8 @@ class FormulaWriter(HigherGroupWriter):
         """Return the names of the speed along a slide, and of its rate."""
         return f"{slide.distance}_dot", f"{slide.distance}_ddot"
 
-    def _rates_rrp(
-        self, words: Mapping[str, str], arm: Arm, sign: int, heading: Heading, placed: str, distance: str
-    ) -> None:
+    def _rates_rrp(self, words: Mapping[str, str], arm: Arm, track: Track, distance: str) -> None:
+        placed, _, sign, heading = track
         P, B, p = words["P"], words["B"], words["p"]
         speed, gain = f"{distance}_dot", f"{distance}_ddot"
         symbol = self.quantities[distance].symbol
@@ -290,10 +274,9 @@ class FormulaWriter(HigherGroupWriter):
             _dotted(symbol, 1),
             words=words,
         )
-        rate = self.omega(placed)
-        self._write_motion(B, v_c, heading, sign, speed, "v", words, Plane())
+        self.write_rates(B, track.moved(v_c, speed), "v", "slides", words)
         a_P, a_c = self.acceleration(P), self.carried(placed, self.at(B), "a")
-        coriolis = Sum.of(speed).times("2", rate, sign=sign)
+        coriolis = self._coriolis(track, speed)
         square = f"{self.omega(p)}**2"
         above = (a_c - a_P).across(heading) + coriolis + lever.times(square, between.sin)
         self.write(
@@ -312,8 +295,7 @@ class FormulaWriter(HigherGroupWriter):
             _dotted(symbol, 2),
             words=words,
         )
-        turned = Plane.polar(coriolis, heading + Heading((), 90.0))
-        self._write_motion(B, a_c, heading, sign, gain, "a", words, turned)
+        self.write_rates(B, track.moved(a_c, gain) + track.across(coriolis), "a", "slides", words)
         self.sines[B] = between.cos
         bare = (a_P - a_c).along(heading) - lever.times(self.alpha(p), between.sin)
         self.mistakes.append(
@@ -331,21 +313,9 @@ class FormulaWriter(HigherGroupWriter):
                 )
             )
 
-    def _write_motion(
-        self, point: str, carried: Plane, heading: Heading, sign: int, rate: str, kind: str, words: Mapping[str, str], turned: Plane
-    ) -> None:  # fmt: skip
-        """Write the velocity, or the acceleration, of a point that slides: that of the guide, along the slide, and the Coriolis term."""
-        there = carried + Plane.polar(Sum.of(rate), heading).times(sign=sign) + turned
-        unit, what = ("mm/s", "velocity") if kind == "v" else ("mm/s^2", "acceleration")
-        for axis, component in (("x", there.x), ("y", there.y)):
-            self.write(
-                f"{kind}_{point}_{axis}",
-                component.code,
-                unit,
-                f"{what}_slides_{axis}",
-                f"{kind}_{{{point}{axis}}}",
-                words=words,
-            )
+    def _coriolis(self, track: Track, speed: str) -> Sum:
+        """Return the Coriolis acceleration of what slides, to the left of its line."""
+        return Sum.of(speed).times("2", self.omega(track.placed), sign=track.sign)
 
     def _rpr(self, group: Dyad) -> None:
         P, slide, Q = group.outer_p, group.inner, group.outer_q
@@ -421,9 +391,8 @@ class FormulaWriter(HigherGroupWriter):
             assert isinstance(B, str)
             assert isinstance(one, SlideEntry)
             assert isinstance(other, SlideEntry)
-            guide_1, base_1, sign_1, way_1 = self.track(one, group.p, B)
-            guide_2, base_2, sign_2, way_2 = self.track(other, group.q, B)
-            gap = base_2 - base_1
+            first, second = self.track(one, group.p, B), self.track(other, group.q, B)
+            gap = second.base - first.base
             name = B
         else:
             P, inner, outer = group.outer_p, group.inner, group.outer_q
@@ -433,18 +402,17 @@ class FormulaWriter(HigherGroupWriter):
             p, q = group.p, group.q
             frame = self.heading(outer.on if outer.of == q else outer.of)
             if inner.of == p:
-                guide_1, base_1, sign_1, way_1 = self._track_place(outer, q, inner.through)
-                sign_2 = 1
-                base_1 = base_1 + rotated(self.local(P, p) - self.local(inner.at, p), frame)
+                first, end = self._track_place(outer, q, inner.through), self.local(inner.at, p)
             else:
-                guide_1, base_1, sign_1, way_1 = self.track(outer, q, inner.at)
-                sign_2 = -1
-                base_1 = base_1 + rotated(self.local(P, p) - local_plane(inner.through), frame)
+                first, end = self.track(outer, q, inner.at), local_plane(inner.through)
+            base = first.base + rotated(self.local(P, p) - end, frame)
+            first = first._replace(base=base)
+            way = frame + Heading.of(inner.along.code)
+            second = Track(first.placed, base, 1 if inner.of == p else -1, way)
             one, other = outer, inner
-            way_2 = frame + Heading.of(inner.along.code)
-            guide_2 = guide_1
-            gap = self.at(P) - base_1
+            gap = self.at(P) - base
             name = P
+        way_1, way_2 = first.heading, second.heading
         between = way_2 - way_1
         below = (
             Sum.of(between.sin)
@@ -464,13 +432,13 @@ class FormulaWriter(HigherGroupWriter):
             "q": group.q,
             "s": one.distance,
             "t": other.distance,
-            "guide": guide_1,
+            "guide": first.placed,
         }
-        sign_of_second = -sign_2 if group.kind == "PRP" else sign_2
+        sign_of_second = -second.sign if group.kind == "PRP" else second.sign
 
         def split(vector: Plane) -> tuple[str, str]:
             """Return the two components of a vector along both slides."""
-            along_1 = (vector.x.times(way_2.sin) - vector.y.times(way_2.cos)).times(sign=sign_1)
+            along_1 = (vector.x.times(way_2.sin) - vector.y.times(way_2.cos)).times(sign=first.sign)
             along_2 = (vector.y.times(way_1.cos) - vector.x.times(way_1.sin)).times(sign=sign_of_second)
             return over(along_1, below), over(along_2, below)
 
@@ -484,71 +452,52 @@ class FormulaWriter(HigherGroupWriter):
         kind = "prp" if group.kind == "PRP" else "rpp"
         write(gap, "", "mm", f"slides_{kind}", 0)
         if group.kind == "PRP":
-            there = base_1 + Plane.polar(Sum.of(one.distance), way_1).times(sign=sign_1)
             start_1, start_2 = (
-                self.hide(f"_line_{s.at}_{name}", b.complex) for s, b in ((one, base_1), (other, base_2))
+                self.hide(f"_line_{s.at}_{name}", t.base.complex) for s, t in ((one, first), (other, second))
             )
             units = [f"polar(1, {way.code})" for way in (way_1, way_2)]
             hidden = self.hide(
                 f"_{name}", f"dyads.prp({start_1} + 0j, {units[0]}, {start_2} + 0j, {units[1]})"
             )
-            self._write_end(name, there, words, hidden)
+            self._write_end(name, first.moved(first.base, one.distance), words, hidden)
             self._finish_rod(group.p, name)
             self._finish_rod(group.q, name)
-            carried = [(self.carried(g, self.at(name), "v")) for g in (guide_1, guide_2)]
+            carried = [self.carried(t.placed, self.at(name), "v") for t in (first, second)]
             write(carried[1] - carried[0], "_dot", "mm/s", f"slides_{kind}_rate", 1)
-            self._write_motion(name, carried[0], way_1, sign_1, f"{one.distance}_dot", "v", words, Plane())
+            self.write_rates(name, first.moved(carried[0], f"{one.distance}_dot"), "v", "slides", words)
             turned = [
-                Plane.polar(
-                    Sum.of(f"{s.distance}_dot").times("2", self.omega(g), sign=sign), way + Heading((), 90.0)
-                )
-                for s, g, sign, way in ((one, guide_1, sign_1, way_1), (other, guide_2, sign_2, way_2))
+                t.across(self._coriolis(t, f"{s.distance}_dot")) for s, t in ((one, first), (other, second))
             ]
-            there_a = [(self.carried(g, self.at(name), "a")) for g in (guide_1, guide_2)]
-            write(
-                there_a[1] + turned[1] - there_a[0] - turned[0], "_ddot", "mm/s^2", f"slides_{kind}_gain", 2
-            )
-            self._write_motion(name, there_a[0], way_1, sign_1, f"{one.distance}_ddot", "a", words, turned[0])
+            carried = [self.carried(t.placed, self.at(name), "a") for t in (first, second)]
+            gains = carried[1] + turned[1] - carried[0] - turned[0]
+            write(gains, "_ddot", "mm/s^2", f"slides_{kind}_gain", 2)
+            there = first.moved(carried[0], f"{one.distance}_ddot") + turned[0]
+            self.write_rates(name, there, "a", "slides", words)
             return
         # The body of the first slide is known by the point of it that the slide moves.
         self._finish_rod(group.p, name)
         moved = one.at if one.of == group.q else next(iter(self.linkage.bodies[group.q].points))
-        placed, base, sign, way = self.track(one, group.q, moved)
+        track = self.track(one, group.q, moved)
         hidden = f"_{moved}"
-        self.hide(f"_line_{moved}", base.complex)
-        self.hide(hidden, f"_line_{moved} + {'-' if sign < 0 else ''}polar({one.distance}, {way.code})")
-        self._write_end(moved, base + Plane.polar(Sum.of(one.distance), way).times(sign=sign), words, hidden)
+        self.hide(f"_line_{moved}", track.base.complex)
+        self.hide(
+            hidden,
+            f"_line_{moved} + {'-' if track.sign < 0 else ''}polar({one.distance}, {track.heading.code})",
+        )
+        self._write_end(moved, track.moved(track.base, one.distance), words, hidden)
         self._finish_rod(group.q, moved)
-        v = self.velocity(name) - self.carried(placed, self.at(name), "v")
+        v = self.velocity(name) - self.carried(track.placed, self.at(name), "v")
         write(v, "_dot", "mm/s", f"slides_{kind}_rate", 1)
-        self._write_motion(
-            moved,
-            self.carried(placed, self.at(moved), "v"),
-            way,
-            sign,
-            f"{one.distance}_dot",
-            "v",
-            words,
-            Plane(),
-        )
-        rate = self.omega(placed)
+        there = track.moved(self.carried(track.placed, self.at(moved), "v"), f"{one.distance}_dot")
+        self.write_rates(moved, there, "v", "slides", words)
         turned = [
-            Plane.polar(Sum.of(f"{s.distance}_dot").times("2", rate, sign=n), w + Heading((), 90.0))
-            for s, n, w in ((one, sign_1, way_1), (other, sign_2, way_2))
+            t.across(self._coriolis(t, f"{s.distance}_dot")) for s, t in ((one, first), (other, second))
         ]
-        a = self.acceleration(name) - self.carried(placed, self.at(name), "a") - turned[0] - turned[1]
+        a = self.acceleration(name) - self.carried(track.placed, self.at(name), "a") - turned[0] - turned[1]
         write(a, "_ddot", "mm/s^2", f"slides_{kind}_gain", 2)
-        own = Plane.polar(Sum.of(f"{one.distance}_dot").times("2", rate, sign=sign), way + Heading((), 90.0))
-        self._write_motion(
-            moved,
-            self.carried(placed, self.at(moved), "a"),
-            way,
-            sign,
-            f"{one.distance}_ddot",
-            "a",
-            words,
-            own,
-        )
+        there = track.moved(self.carried(track.placed, self.at(moved), "a"), f"{one.distance}_ddot")
+        own = track.across(self._coriolis(track, f"{one.distance}_dot"))
+        self.write_rates(moved, there + own, "a", "slides", words)
 
     def _wheel(self, wheel: Wheel) -> None:
         gear, body = wheel.gear, wheel.body

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from coursework.errors import CourseworkError
-from coursework.linkages.linkage_file import GROUND, GearEntry, LinkageFile, SlideEntry
+from coursework.linkages.entries import GROUND, GearEntry, LinkageFile, SlideEntry
 from coursework.messages import Message
 from coursework.structure.assour import Decomposition, decompose
 

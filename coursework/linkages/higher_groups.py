@@ -6,11 +6,11 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from coursework.linkages.groups import HigherGroup
-from coursework.linkages.linkage_file import (
+from coursework.linkages.entries import (
     GROUND,
     NearEntry,
 )
+from coursework.linkages.groups import HigherGroup
 from coursework.linkages.loop_chains import LoopWriter, back, closure_latex, vector_code
 from coursework.linkages.points import Chain, middle, rotated, value_of
 from coursework.linkages.terms import Heading

@@ -11,13 +11,12 @@ import keyword
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Any, TypeAlias
+from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
 
 from coursework.degrees import atan2, cos, sin, sqrt
-from coursework.linkages.groups import groups_of
-from coursework.linkages.linkage_file import (
+from coursework.linkages.entries import (
     GROUND,
     AssemblyEntry,
     GivenEntry,
@@ -25,6 +24,7 @@ from coursework.linkages.linkage_file import (
     Place,
     SlideEntry,
 )
+from coursework.linkages.groups import groups_of
 from coursework.linkages.terms import Heading, Plane, Sum
 from coursework.messages import Message
 from coursework.model import symbol_of
@@ -128,6 +128,24 @@ class Arm:
     @property
     def vector(self) -> Plane:
         return Plane.polar(self.length, self.heading).times(sign=self.sign)
+
+
+class Track(NamedTuple):
+    """Line along which a point of a body moves: the placed body that carries it, the coordinates of the point where the distance is 0,
+    the sign of the distance, and the direction of the slide."""
+
+    placed: str
+    base: Plane
+    sign: int
+    heading: Heading
+
+    def moved(self, start: Plane, distance: str) -> Plane:
+        """Return a vector with a distance along the slide, or with a rate of it, added to it."""
+        return start + Plane.polar(Sum.of(distance), self.heading).times(sign=self.sign)
+
+    def across(self, value: Sum) -> Plane:
+        """Return a value to the left of the slide, as a vector."""
+        return Plane.polar(value, self.heading + Heading((), 90.0))
 
 
 class PointWriter:
@@ -264,23 +282,17 @@ class PointWriter:
         length, turn = f"d_{start}{end}", f"delta_{start}{end}"
         if length not in self.quantities:
             words = {"P": start, "Q": end, "body": body}
-            self.write(
-                length,
-                f"sqrt(({gap.x.code})**2 + ({gap.y.code})**2)",
-                "mm",
-                "bar_length",
-                f"{start}{end}",
-                words=words,
-            )
-            self.write(
-                turn,
-                f"atan2({gap.y.code}, {gap.x.code})",
-                "deg",
-                "bar_direction",
-                rf"\delta_{{{start}{end}}}",
-                words=words,
-            )
+            symbols = f"{start}{end}", rf"\delta_{{{start}{end}}}"
+            self.write_polar((length, turn), gap, ("bar_length", "bar_direction"), symbols, words)
         return Arm(1, Sum.of(length), frame + Heading.of(turn))
+
+    def write_polar(
+        self, names: tuple[str, str], gap: Plane, steps: tuple[str, str], symbols: tuple[str, str], words: Mapping[str, str]
+    ) -> None:  # fmt: skip
+        """Write the length and the direction of a vector."""
+        codes = f"sqrt(({gap.x.code})**2 + ({gap.y.code})**2)", f"atan2({gap.y.code}, {gap.x.code})"
+        for name, code, unit, step, symbol in zip(names, codes, ("mm", "deg"), steps, symbols, strict=True):
+            self.write(name, code, unit, step, symbol, words=words)
 
     def at(self, point: str) -> Plane:
         """Return the coordinates of a placed point."""
@@ -335,18 +347,17 @@ class PointWriter:
             before = self._motion(start, kind)
             there = before + self._turning(body, self.arm(body, start, point).vector, kind)
             words = {"B": point, "P": start, "body": body}
-            step = ("velocity" if kind == "v" else "acceleration") + ("_about" if before.vanishes else "_on")
-            unit = "mm/s" if kind == "v" else "mm/s^2"
-            for axis, component in (("x", there.x), ("y", there.y)):
-                self.write(
-                    f"{kind}_{point}_{axis}",
-                    component.code,
-                    unit,
-                    f"{step}_{axis}",
-                    f"{kind}_{{{point}{axis}}}",
-                    words=words,
-                )
+            self.write_rates(point, there, kind, "about" if before.vanishes else "on", words)
         return Plane(Sum.of(f"{kind}_{point}_x"), Sum.of(f"{kind}_{point}_y"))
+
+    def write_rates(self, point: str, rates: Plane, kind: str, step: str, words: Mapping[str, str]) -> None:
+        """Write both components of the velocity, or of the acceleration, of a point."""
+        unit, what = ("mm/s", "velocity") if kind == "v" else ("mm/s^2", "acceleration")
+        for axis, component in (("x", rates.x), ("y", rates.y)):
+            self.write(
+                f"{kind}_{point}_{axis}", component.code, unit, f"{what}_{step}_{axis}",
+                f"{kind}_{{{point}{axis}}}", words=words,
+            )  # fmt: skip
 
     def _turning(self, body: str, arm: Plane, kind: str) -> Plane:
         """Return the velocity, or the acceleration, that the turning of a body adds over an arm."""
@@ -372,28 +383,18 @@ class PointWriter:
         self.reference[body] = start
         self.order.append(body)
 
-    def track(self, slide: SlideEntry, body: str, point: str) -> tuple[str, Plane, int, Heading]:
-        """Return how a point of a body moves that slides on a placed one: the placed body, the coordinates of the point where the distance
-        is 0, the sign of the distance, and the direction of the slide."""
+    def track(self, slide: SlideEntry, body: str, point: str) -> Track:
+        """Return how a point of a body moves that slides on a placed one."""
         slides = body == slide.of
         placed = slide.on if slides else slide.of
         frame = self.heading(placed)
-        heading = frame + Heading.of(slide.along.code)
-        if slides:
+        if not slides:
+            start, origin = self.at(slide.at), local_plane(slide.through)
+        else:
             start = self.at(slide.through_name) if slide.through_name else self.world(slide.through, placed)
-            return (
-                placed,
-                start + rotated(self.local(point, body) - self.local(slide.at, body), frame),
-                1,
-                heading,
-            )
-        start = self.at(slide.at)
-        return (
-            placed,
-            start + rotated(self.local(point, body) - local_plane(slide.through), frame),
-            -1,
-            heading,
-        )
+            origin = self.local(slide.at, body)
+        base = start + rotated(self.local(point, body) - origin, frame)
+        return Track(placed, base, 1 if slides else -1, frame + Heading.of(slide.along.code))
 
     def world(self, place: Place, body: str) -> Plane:
         """Return the coordinates of a place without a name in a placed body's frame."""
@@ -402,16 +403,12 @@ class PointWriter:
         origin = self.linkage.bodies[body].at
         return self.at(origin) + rotated(local_plane(place), self.heading(body))
 
-    def _track_place(self, slide: SlideEntry, body: str, place: Place) -> tuple[str, Plane, int, Heading]:
-        """Return how a place of a body moves that slides on a placed one; as :meth:`_track`."""
+    def _track_place(self, slide: SlideEntry, body: str, place: Place) -> Track:
+        """Return how a place of a body moves that slides on a placed one."""
         point = slide.at if body == slide.of else next(iter(self.linkage.bodies[body].points))
-        placed, base, sign, heading = self.track(slide, body, point)
-        return (
-            placed,
-            base + rotated(local_plane(place) - self.local(point, body), self.heading(placed)),
-            sign,
-            heading,
-        )
+        track = self.track(slide, body, point)
+        off = rotated(local_plane(place) - self.local(point, body), self.heading(track.placed))
+        return track._replace(base=track.base + off)
 
     def transitive(self, names: Sequence[str]) -> list[Quantity]:
         """Return the quantities that some quantities are computed from, and themselves, by their formulas."""

@@ -8,9 +8,9 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from coursework.errors import nearest
+from coursework.linkages.entries import GROUND
 from coursework.linkages.formulas import FormulaWriter
 from coursework.linkages.groups import Group
-from coursework.linkages.linkage_file import GROUND
 from coursework.linkages.points import UsualMistake, over
 from coursework.linkages.terms import Heading, Plane, Sum
 from coursework.linkages.vectors import PolygonWriter

@@ -11,10 +11,10 @@ from pathlib import Path
 from typing import Any
 
 from coursework.errors import BadCourse
+from coursework.linkages.entries import GROUND, Place, SlideEntry
 from coursework.linkages.expressions import QuantityExpression
 from coursework.linkages.formulas import FormulaWriter
 from coursework.linkages.groups import Dyad, HigherGroup, Wheel
-from coursework.linkages.linkage_file import GROUND, Place, SlideEntry
 from coursework.linkages.questions import LinkageQuestion, QuestionWriter
 from coursework.quantities.formula_latex import PrintedName, tree_latex
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
+from coursework.linkages.entries import GROUND, SlideEntry
 from coursework.linkages.formulas import FormulaWriter
 from coursework.linkages.groups import Dyad
-from coursework.linkages.linkage_file import GROUND, SlideEntry
 from coursework.linkages.points import Quantity, UsualMistake, names_in
 from coursework.linkages.terms import Heading
 from coursework.messages import Message

@@ -1,0 +1,172 @@
+"""What a mechanism's file states: places, bodies, joints, loads, and the whole, as data."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from coursework.errors import BadInput
+from coursework.linkages.expressions import ZERO, QuantityExpression
+from coursework.system.toml_files import TomlReader
+
+GROUND = "ground"
+
+
+@dataclass(frozen=True)
+class Place:
+    """Point in a frame: by coordinates, or by distance and direction from the frame's origin."""
+
+    x: QuantityExpression = ZERO
+    y: QuantityExpression = ZERO
+    radius: QuantityExpression | None = None
+    angle: QuantityExpression = ZERO
+
+    @property
+    def is_origin(self) -> bool:
+        return self.radius is None and self.x.is_zero and self.y.is_zero
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Quantities that place it."""
+        several = (self.x, self.y, self.radius or ZERO, self.angle)
+        return tuple(dict.fromkeys(name for each in several for name in each.names))
+
+
+@dataclass(frozen=True)
+class GivenEntry:
+    """Given quantity: a value, or a range with a step, in the canonical unit."""
+
+    unit: str
+    value: float | None = None
+    low: QuantityExpression = ZERO
+    high: QuantityExpression = ZERO
+    step: str = "1"
+    nonzero: bool = False
+    positive: bool = False
+
+
+@dataclass(frozen=True)
+class BodyEntry:
+    """Moving body: its points in its own frame, by name; the quantity or the constant that turns it, if the file states one."""
+
+    name: str
+    points: Mapping[str, Place]
+    at: str
+    angle: QuantityExpression | None = None
+
+
+@dataclass(frozen=True)
+class SlideEntry:
+    """Point of a body that slides on a line of another: the line's point and direction in the guide's frame, the name of the
+    distance along it."""
+
+    at: str
+    of: str
+    on: str
+    through: Place
+    through_name: str
+    along: QuantityExpression
+    distance: str
+
+
+@dataclass(frozen=True)
+class GearEntry:
+    """Two wheels that roll on each other, and the carrier of their centres."""
+
+    first: str
+    second: str
+    carrier: str
+    radii: tuple[QuantityExpression, QuantityExpression]
+    inner: bool
+
+
+@dataclass(frozen=True)
+class AssemblyEntry:
+    """Ways to assemble a group: ``left`` and ``right`` of a line between two points, or ``ahead`` and ``behind`` on a slide; one, or
+    those among which a variant draws."""
+
+    ways: tuple[str, ...]
+    start: str = ""
+    end: str = ""
+
+    @property
+    def is_drawn(self) -> bool:
+        return len(self.ways) > 1
+
+
+@dataclass(frozen=True)
+class NearEntry:
+    """Start of Newton's method: places of points, mm, with the driver at an angle, degrees."""
+
+    places: Mapping[str, complex]
+    angle: float
+
+
+@dataclass(frozen=True)
+class LoadEntry:
+    """Load on a body: a moment, or a force at a point in a direction; expressions in N m, N, degrees."""
+
+    on: str
+    moment: QuantityExpression | None = None
+    force: QuantityExpression | None = None
+    angle: QuantityExpression = ZERO
+
+
+@dataclass(frozen=True)
+class LinkageFile:
+    """Mechanism as its file states it."""
+
+    path: Path
+    source: str
+    title: Mapping[str, str]
+    version: int
+    given: Mapping[str, GivenEntry]
+    ground: Mapping[str, Place]
+    bodies: Mapping[str, BodyEntry]
+    slides: Mapping[str, SlideEntry]
+    gears: tuple[GearEntry, ...]
+    assembly: Mapping[str, AssemblyEntry]
+    near: NearEntry | None
+    ask: Mapping[str, Any]
+    loads: tuple[LoadEntry, ...]
+    required: tuple[str, ...]  #: conditions on the draws
+    driver: str  #: the body that is driven
+    angle: str  #: the quantity that turns it
+    speed: str = ""  #: '' where the file gives none
+    acceleration: str = ""
+    name: str = field(default="")
+    known: tuple[
+        tuple[Mapping[str, float | str], Mapping[str, tuple[str, str]]], ...
+    ] = ()  #: given values, then results as text and unit
+
+    def refused(self, at: Sequence[str | int], why: str) -> BadInput:
+        """Return the error of a key, with file and line."""
+        return TomlReader(self.path, self.source).refused(at, why)
+
+    def holders(self, point: str) -> tuple[str, ...]:
+        """Return the bodies that have a point, the ground first."""
+        on_ground = (GROUND,) if point in self.ground else ()
+        return (*on_ground, *(n for n, b in self.bodies.items() if point in b.points))
+
+    def place(self, point: str, body: str) -> Place:
+        """Return where a point lies in a body's frame."""
+        return self.ground[point] if body == GROUND else self.bodies[body].points[point]
+
+    @property
+    def points(self) -> tuple[str, ...]:
+        """Names of all points, each once."""
+        return tuple(dict.fromkeys([*self.ground, *(p for b in self.bodies.values() for p in b.points)]))
+
+    @property
+    def pins(self) -> dict[str, tuple[str, ...]]:
+        """Bodies that share a point, by point; two or more."""
+        shared = {p: self.holders(p) for p in self.points}
+        return {p: bodies for p, bodies in shared.items() if len(bodies) > 1}
+
+    @property
+    def mobility(self) -> int:
+        """Degrees of freedom by the count 3 n - 2 b - h."""
+        pins = sum(len(bodies) - 1 for bodies in self.pins.values())
+        return 3 * len(self.bodies) - 2 * (pins + len(self.slides)) - len(self.gears)

@@ -1,0 +1,223 @@
+"""Reader of the bodies and joints of a mechanism's file, and of what drives it."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from coursework.errors import nearest
+from coursework.linkages.entries import GROUND, BodyEntry, GearEntry, GivenEntry, Place, SlideEntry
+from coursework.linkages.table_reader import NAME, POINT, TableReader
+from coursework.messages import Message
+
+_BODY = re.compile(r"(?:[2-9]|[1-9][0-9]|[a-z][a-z0-9]*)\Z")
+
+
+class JointReader(TableReader):
+    """Reader of bodies, slides, gears and the driver."""
+
+    # -------------------------------------------------------------------- bodies
+
+    def _bodies(self, ground: Mapping[str, Place]) -> Mapping[str, BodyEntry]:
+        table = self._table("bodies")
+        if not table:
+            raise self.refused(
+                ("bodies",),
+                Message(
+                    "a mechanism has bodies: [bodies], then {example}",
+                    example='2 = { at = "O", angle = "theta2", points = { A = "r2" } }',
+                ),
+            )
+        results = {}
+        for name, value in table.items():
+            at = ("bodies", name)
+            if not _BODY.match(name):
+                raise self.refused(
+                    at,
+                    Message(
+                        "a body is called by a number from 2 on, or a small letter; found {name!r} (the ground is 1)",
+                        name=name,
+                    ),
+                )
+            if not isinstance(value, Mapping):
+                raise self.refused(
+                    at,
+                    Message(
+                        'a body is {{ points = {{ A = "0 mm", B = "r3" }} }}; found {value!r}', value=value
+                    ),
+                )
+            self.only(value, ("at", "angle", "points"), at, name)
+            points = self._body_points(name, value)
+            origin = value.get("at") or next((p for p, place in points.items() if place.is_origin), "")
+            if not origin:
+                raise self.refused(
+                    at,
+                    Message(
+                        'body {name} says where its frame begins: at = "A", or a point at "0 mm"', name=name
+                    ),
+                )
+            if "at" in value:
+                self._check_point(at, str(origin))
+                points = {str(origin): Place(), **points}
+            angle = value.get("angle")
+            results[name] = BodyEntry(
+                name,
+                points,
+                str(origin),
+                None if angle is None else self._expression((*at, "angle"), angle, "deg"),
+            )
+        return results
+
+    def _body_points(self, name: str, value: Mapping[str, Any]) -> dict[str, Place]:
+        points = value.get("points", {})
+        if not isinstance(points, Mapping):
+            raise self.refused(
+                ("bodies", name),
+                Message('points = {{ A = "0 mm", B = "r3" }}; found {points!r}', points=points),
+            )
+        origin = str(
+            value.get("at")
+            or next((p for p, place in points.items() if re.match(r"\s*0\b(?!\.)", str(place))), "")
+        )
+        results = {}
+        for point, place in points.items():
+            self._check_point(("bodies", name), point)
+            own = (f"{origin}{point}", f"x_{point}_{name}", f"y_{point}_{name}", f"gamma_{point}")
+            results[point] = self._place(("bodies", name), place, own)
+        return results
+
+    def _driver(self, bodies: Mapping[str, BodyEntry], given: Mapping[str, GivenEntry]) -> tuple[str, str]:
+        driven = [b for b in bodies.values() if b.angle is not None and not b.angle.is_number]
+        if not driven:
+            raise self.refused(
+                ("bodies",),
+                Message(
+                    "nothing drives: one body is turned by a given angle: {example}",
+                    example='2 = { at = "O", angle = "theta2", … }',
+                ),
+            )
+        if len(driven) > 1:
+            raise self.refused(
+                ("bodies", driven[1].name),
+                Message(
+                    "two bodies are driven, {name} and {name_2}; one angle drives, those of the others follow",
+                    name=driven[0].name,
+                    name_2=driven[1].name,
+                ),
+            )
+        angle = driven[0].angle
+        assert angle is not None
+        if not angle.is_name or not angle.code.startswith("theta"):
+            raise self.refused(
+                ("bodies", driven[0].name),
+                Message(
+                    "the driving angle is a given quantity such as theta2; found {code!r}", code=angle.code
+                ),
+            )
+        return driven[0].name, angle.code
+
+    # -------------------------------------------------------------------- joints
+
+    def _slides(
+        self, ground: Mapping[str, Place], bodies: Mapping[str, BodyEntry]
+    ) -> Mapping[str, SlideEntry]:
+        results = {}
+        for point, value in self._table("slides").items():
+            at = ("slides", point)
+            if not isinstance(value, Mapping):
+                raise self.refused(
+                    at,
+                    Message(
+                        'a slide is {point} = {{ of = "4", on = "ground", through = "C", along = "0 deg" }}; found {value!r}',
+                        point=point,
+                        value=value,
+                    ),
+                )
+            self.only(value, ("of", "on", "through", "along", "distance"), at, point)
+            names = [*bodies, GROUND]
+            of, on = str(value.get("of", "")), str(value.get("on", GROUND))
+            on = GROUND if on == "1" else on
+            for body in (of, on):
+                if body not in names:
+                    raise self.refused(
+                        at, Message("no body {body!r}{found}", body=body, found=nearest(body, names))
+                    )
+            if of == GROUND or point not in bodies[of].points:
+                raise self.refused(
+                    at,
+                    Message(
+                        "the sliding point {point} is a point of body {value}; it has none of this name",
+                        point=point,
+                        value=of or "…",
+                    ),
+                )
+            if of == on:
+                raise self.refused(at, Message("body {of} does not slide on itself", of=of))
+            through, name = self._through(at, value.get("through", ["0 mm", "0 mm"]), on, ground, bodies)
+            distance = str(value.get("distance", f"s_{point}"))
+            if not NAME.match(distance) or distance in self.units:
+                raise self.refused(
+                    at,
+                    Message(
+                        "distance names the distance along the slide, which follows; found {distance!r}",
+                        distance=distance,
+                    ),
+                )
+            along = self._expression(at, value.get("along", "0 deg"), "deg", f"delta_{point}")
+            results[point] = SlideEntry(point, of, on, through, name, along, distance)
+        return results
+
+    def _through(
+        self,
+        at: Sequence[str | int],
+        value: Any,
+        on: str,
+        ground: Mapping[str, Place],
+        bodies: Mapping[str, BodyEntry],
+    ) -> tuple[Place, str]:
+        """Return the point through which a slide goes, in the guide's frame, and its name if it has one."""
+        points = ground if on == GROUND else bodies[on].points
+        if isinstance(value, str) and POINT.match(value):
+            if value not in points:
+                raise self.refused(
+                    at,
+                    Message(
+                        "body {on} has no point {value!r}{found}",
+                        on=on,
+                        value=value,
+                        found=nearest(value, points),
+                    ),
+                )
+            return points[value], value
+        return self._place(at, value, (f"a_{at[-1]}", f"a_{at[-1]}", f"e_{at[-1]}", f"gamma_{at[-1]}")), ""
+
+    def _gears(self, bodies: Mapping[str, BodyEntry]) -> tuple[GearEntry, ...]:
+        results = []
+        for name, value in self._table("gears").items():
+            at = ("gears", name)
+            form = (
+                'G = { first = "2", second = "3", carrier = "ground", radii = ["R2", "R3"], inner = false }'
+            )
+            if (
+                not isinstance(value, Mapping)
+                or not isinstance(value.get("radii"), list)
+                or len(value["radii"]) != 2
+            ):
+                raise self.refused(at, Message("a gear is {form}; found {value!r}", form=form, value=value))
+            self.only(value, ("first", "second", "carrier", "radii", "inner"), at, name)
+            names = [*bodies, GROUND]
+            pair = [str(value.get(key, GROUND)) for key in ("first", "second", "carrier")]
+            for body in pair:
+                if body not in names:
+                    raise self.refused(
+                        at, Message("no body {body!r}{found}", body=body, found=nearest(body, names))
+                    )
+            first, second = (
+                self._expression(at, r, "mm", f"R{body}")
+                for r, body in zip(value["radii"], pair, strict=False)
+            )
+            results.append(
+                GearEntry(pair[0], pair[1], pair[2], (first, second), bool(value.get("inner", False)))
+            )
+        return tuple(results)

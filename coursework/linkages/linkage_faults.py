@@ -1,0 +1,82 @@
+"""Faults of a mechanism that its file states in order: what does not hold together, or moves otherwise than by one driver."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from coursework.errors import BadInput, nearest
+from coursework.linkages.entries import LinkageFile
+from coursework.messages import Message
+
+
+def linkage_faults(linkage: LinkageFile) -> Iterator[BadInput]:
+    """Yield what bodies and joints do not make: what holds each body, and how many ways all of them move.
+
+    Parameters
+    ----------
+    linkage
+        The mechanism.
+
+    Yields
+    ------
+    Errors with the line.
+    """
+    geared = {body for g in linkage.gears for body in (g.first, g.second)}
+    hold = {
+        name: [
+            *(p for p in body.points if p in linkage.pins),
+            *(s.at for s in linkage.slides.values() if name in (s.of, s.on)),
+        ]
+        for name, body in linkage.bodies.items()
+    }
+    for name in (n for n, joints in hold.items() if not joints):
+        points = ", ".join(linkage.bodies[name].points)
+        yield linkage.refused(
+            ("bodies", name),
+            Message(
+                "body {name} is in the air: it shares none of its points {points} with another body, and does not slide",
+                name=name,
+                points=points,
+            ),
+        )
+    for name, joints in hold.items():
+        if len(joints) < 2 and name != linkage.driver and name not in geared:
+            yield linkage.refused(
+                ("bodies", name),
+                Message(
+                    "body {name} hangs on {value} alone; a second point that it shares, or a slide, holds it",
+                    name=name,
+                    value=joints[0],
+                ),
+            )
+    crank = linkage.bodies[linkage.driver]
+    if crank.at not in linkage.ground:
+        yield linkage.refused(
+            ("bodies", crank.name),
+            Message(
+                "the driven body {name} turns about a point of the ground; {at} is none",
+                name=crank.name,
+                at=crank.at,
+            ),
+        )
+    if linkage.mobility != 1:
+        pins = sum(len(b) - 1 for b in linkage.pins.values())
+        count = f"3 × {len(linkage.bodies)} bodies, less 2 × {pins + len(linkage.slides)} pins and slides"
+        count += f", less {len(linkage.gears)} gears" if linkage.gears else ""
+        does = Message("nothing moves") if linkage.mobility < 1 else Message("one driver does not settle it")
+        yield linkage.refused(
+            ("bodies",),
+            Message(
+                "the mechanism has {mobility} degrees of freedom ({count}), a driver moves 1: {does}",
+                mobility=linkage.mobility,
+                count=count,
+                does=does,
+            ),
+        )
+    for name, entry in linkage.assembly.items():
+        for point in (name, entry.start, entry.end):
+            if point and point not in linkage.points:
+                yield linkage.refused(
+                    ("assembly", name),
+                    Message("no point {point!r}{found}", point=point, found=nearest(point, linkage.points)),
+                )
