@@ -85,10 +85,10 @@ def questions(made: CompiledLinkage) -> dict[str, list[CheckBox]]:
     """Return what can be asked of a mechanism, by key of ``[ask]``, and what is."""
     linkage, formulas = made.linkage, made.formulas
     turns = [
-        t for t in dict.fromkeys(formulas.turns.values()) if t.startswith("theta") and t != linkage.angle
+        t for t in dict.fromkeys(formulas.turns.values()) if t.startswith("theta") and t != linkage.moved
     ]
     points = [p for p in linkage.points if p not in linkage.ground]
-    slides = [s.distance for s in linkage.slides.values()]
+    slides = [s.distance for s in linkage.followed_slides]
     able: dict[str, Sequence[str]] = {
         "mobility": ("mobility",),
         "class": () if linkage.gears else ("class",),
@@ -101,7 +101,7 @@ def questions(made: CompiledLinkage) -> dict[str, list[CheckBox]]:
         ):
             rates = [t.replace("theta", stem, 1) for t in turns]
             able[key] = [*rates, *(f"{s}{end}" for s in slides), *(f"{mark}{p}" for p in points)]
-        able["polygon"] = ("velocity", "acceleration")
+        able["polygon"] = ("velocity", "acceleration") if linkage.drive.kind == "turn" else ()
         bodies = {"1": GROUND, **{b: b for b in linkage.bodies if b.isdigit() and len(b) == 1}}
         centres = [f"I{i}{j}" for i in bodies for j in bodies if i < j and i != "1"]
         able["instant_centres"] = [
@@ -110,7 +110,7 @@ def questions(made: CompiledLinkage) -> dict[str, list[CheckBox]]:
             c for c in centres if formulas.turns[c[1]] != formulas.turns[c[2]]
         ]  # of bodies that are turned alike it is at infinity
         turning = [b for b in linkage.bodies if formulas.turns[b] in turns]
-        able["advantage"] = ("advantage",) if turning else ()
+        able["advantage"] = ("advantage",) if turning and linkage.drive.kind == "turn" else ()
     return {
         key: [CheckBox(name, _is_asked(linkage.ask, key, name)) for name in names]
         for key, names in able.items()

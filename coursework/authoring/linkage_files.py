@@ -138,37 +138,42 @@ def report(exercise: CourseExercise[Any], made: CompiledLinkage, seed: int) -> l
         rows.append((Message("class"), roman(formulas.rank)))
     if kind := _grashof(made, exercise, given):
         rows.append((Message("four-bar linkage"), kind))
-    turns = np.arange(-180.0, 180.0, _DEGREES)
+    places, unit = np.arange(-180.0, 180.0, _DEGREES), "°"
+    if linkage.drive.kind != "turn":
+        around = 0.5 * given[linkage.moved], 1.5 * given[linkage.moved]
+        low, high = (given[n] if n else end for n, end in zip(linkage.drive.limits, around, strict=True))
+        places, unit = np.linspace(low, high, 361), " mm"
     names = [
-        t for t in dict.fromkeys(formulas.turns.values()) if t.startswith("theta") and t != linkage.angle
+        t for t in dict.fromkeys(formulas.turns.values()) if t.startswith("theta") and t != linkage.moved
     ]
-    distances = [s.distance for s in linkage.slides.values()]
+    distances = [s.distance for s in linkage.followed_slides]
     found = (
-        exercise.solve(only=[*names, *distances], **{**given, linkage.angle: turns})
+        exercise.solve(only=[*names, *distances], **{**given, linkage.moved: places})
         if names or distances
         else {}
     )
     closed = (
-        np.all([np.isfinite(np.broadcast_to(v, turns.shape)) for v in found.values()], axis=0)
+        np.all([np.isfinite(np.broadcast_to(v, places.shape)) for v in found.values()], axis=0)
         if found
-        else turns == turns
+        else places == places
     )
-    rows.append((Message("the driver turns"), _range(turns, np.broadcast_to(closed, turns.shape))))
+    told = Message("the driver turns") if unit == "°" else Message("the driving length goes")
+    rows.append((told, _range(places, np.broadcast_to(closed, places.shape), unit)))
     for name, values in found.items():
-        along = np.broadcast_to(np.asarray(values, dtype=float), turns.shape)[closed]
+        along = np.broadcast_to(np.asarray(values, dtype=float), places.shape)[closed]
         if not len(along):
             continue
         if name in names:
-            along, unit = np.unwrap(along, period=360), "°"
+            along, own = np.unwrap(along, period=360), "°"
             if np.ptp(along) > 355:
                 rows.append((Message("{name} over the motion", name=name), Message("turns all round")))
                 continue
         else:
-            unit = " mm"
+            own = " mm"
         rows.append(
             (
                 Message("{name} over the motion", name=name),
-                f"{along.min():.4g}{unit} … {along.max():.4g}{unit}",
+                f"{along.min():.4g}{own} … {along.max():.4g}{own}",
             )
         )
     return [{"property": name, "value": value} for name, value in rows]
@@ -207,10 +212,12 @@ def _fixed(made: CompiledLinkage, point: str, given: Mapping[str, Any]) -> compl
     )
 
 
-def _range(turns: np.ndarray, closed: np.ndarray) -> object:
+def _range(places: np.ndarray, closed: np.ndarray, unit: str) -> object:
     """Return where the driver can stand."""
-    if closed.all():
+    if closed.all() and unit == "°":
         return Message("all round")
+    if unit != "°":  # a length does not come round
+        places, closed = (np.append(v, more) for v, more in ((places, places[-1]), (closed, False)))
     if not closed.any():
         return Message("nowhere: the mechanism does not close for these values")
     starts = np.flatnonzero(closed & ~np.roll(closed, 1))
@@ -218,7 +225,8 @@ def _range(turns: np.ndarray, closed: np.ndarray) -> object:
     pairs = []
     for start in starts:
         end = next((e for e in ends if e >= start), ends[0])
-        pairs.append(f"{turns[start]:.0f}° … {turns[end] + (360 if end < start else 0):.0f}°")
+        last = places[end] + (360 if end < start else 0)
+        pairs.append(f"{places[start]:.0f}{unit} … {last:.0f}{unit}")
     return "; ".join(pairs)
 
 

@@ -49,6 +49,64 @@ def turns_round(
     return good.reshape(*shape, _STEPS).all(axis=-1)
 
 
+def length_at(
+    functions: Callable[[], Sequence[Callable[..., Any]]],
+    name: str,
+    length: str,
+    driven: Any,
+    limits: tuple[Any, Any],
+    values: Mapping[str, Any],
+) -> Any:
+    """Return the driven length at which a body stands at an angle.
+
+    Parameters
+    ----------
+    functions
+        A function that returns that of the angle, and those that it needs.
+    name, length
+        Names of the angle, degrees, and of the length, mm.
+    driven
+        The angle; a scalar or an array of shape ``(n,)``.
+    limits
+        Lengths between which it is sought, mm.
+    values
+        The other quantities that place the mechanism, scalars.
+
+    Returns
+    -------
+    The length, the shortest if there are several; NaN where the body does not come to the angle between the limits.
+    """
+    graph = _graph(tuple(functions()))
+
+    def apart(at: np.ndarray) -> np.ndarray:
+        with np.errstate(all="ignore"):
+            found = np.asarray(graph.evaluate((name,), {**values, length: at})[name])
+        return (np.broadcast_to(found, at.shape) - target + 180.0) % 360.0 - 180.0
+
+    wanted = np.atleast_1d(np.asarray(driven, dtype=float))
+    least, most = map(float, limits)
+    over = 1e-9 * (most - least)  # rounding leaves an end where it is
+    tried = np.linspace(least - over, most + over, _STEPS + 1)
+    target: Any = wanted[:, None]
+    gaps = apart(np.broadcast_to(tried, (len(wanted), len(tried))))
+    crossed = (gaps[:, :-1] * gaps[:, 1:] <= 0) & (abs(gaps[:, :-1] - gaps[:, 1:]) < 180.0)
+    first = np.argmax(crossed, axis=1)
+    low, high = tried[first], tried[first + 1]
+    target = wanted
+    one, other = apart(low), apart(high)
+    for _ in range(60):  # the regula falsi of Illinois; a step that moves nothing ends it
+        with np.errstate(all="ignore"):
+            middle = np.where(one == other, low, (low * other - high * one) / (other - one))
+        gap = apart(middle)
+        kept = gap * other < 0
+        low, one = np.where(kept, high, low), np.where(kept, other, one / 2)
+        if np.array_equal(middle, high):
+            break
+        high, other = middle, gap
+    found = np.where(crossed.any(axis=1), np.clip(high, least, most), np.nan)
+    return found if np.ndim(driven) else float(found[0])
+
+
 def reference_values(
     functions: Callable[[], Sequence[Callable[..., Any]]], names: Sequence[str], given: Mapping[str, Any]
 ) -> dict[str, Any]:
@@ -148,12 +206,22 @@ class _Frames:
         self.free = set(self.linkage.free)
         for body, held in enumerate(self.linkage.origins):
             start = self.origins[held.body] if held.body >= 0 else (0j, 0j, 0j)
-            shift = 0j
-            if body in self.free:
-                shift = complex(self.linkage.number(mechanism.bodies[body].origin)) * MM
             place = self.carried(held, start)
-            self.origins.append((place[0] + shift, place[1], place[2]))
+            if body in self.free:
+                origin = mechanism.bodies[body]
+                shift = complex(self.linkage.number(origin.origin)) * MM
+                place = (place[0] + shift, *self._stated(body, origin.at, values))
+            self.origins.append(place)
         self.origins.append((0j, 0j, 0j))
+
+    def _stated(self, body: int, point: str, values: Mapping[str, Any]) -> tuple[complex, complex]:
+        """Return the velocity and the acceleration of the origin of a free body, where they are stated: it drives, and is free no more."""
+        if f"v_{point}_x" in values:
+            self.free.remove(body)
+        v, a = (
+            complex(*(float(values.get(f"{kind}_{point}_{axis}", 0.0)) for axis in "xy")) for kind in "va"
+        )
+        return v * MM, a * MM
 
     def carried(
         self, held: BodyPoint, start: tuple[complex, complex, complex] | None = None
@@ -217,6 +285,8 @@ class _Frames:
         slid = (place[1] - under[1]) * np.conj(way)
         if order > 0:
             results.append(abs(slid.imag) / sizes[1])
+            if (name := f"{track.distance}_dot") in linkage.values:
+                results.append(abs(slid.real - float(linkage.values[name]) * MM) / sizes[1])
         if order > 1:
             turned = 2j * self.rates[on] * slid.real * way
             results.append(abs(((place[2] - under[2] - turned) * np.conj(way)).imag) / sizes[2])

@@ -30,18 +30,18 @@ _IMPORTS = """\
 import numpy as np
 from math import pi
 
-from coursework.degrees import acos, angle, atan2, cos, from_radians, polar, sin, sqrt, tan, wrap
+from coursework.degrees import acos, angle, asin, atan2, cos, from_radians, polar, sin, sqrt, tan, wrap
 from coursework.kinematics import dyads
 from coursework.kinematics.angles import Degrees
 from coursework.kinematics.chains import Vector
 from coursework.kinematics.four_bar import FourBar
 from coursework.kinematics.slider_crank import SliderCrank
-from coursework.linkages.closure import SlideTrack, closure_gaps, reference_values, turns_round
+from coursework.linkages.closure import SlideTrack, closure_gaps, length_at, reference_values, turns_round
 from coursework.linkages.large import LargeGroup
 """
 _EXERCISE_IMPORTS = """\
 from coursework.figures import Figure, angle_mark, circle, ground_pivot, line, link, pin, point, rail, slider, slot_link
-from coursework.model import Driver, Exercise, Part, chosen, detectable, drawn, fixed
+from coursework.model import Driver, Exercise, Jack, Part, chosen, detectable, drawn, fixed
 """
 _SOLUTION_IMPORTS = """from coursework.figures.polygons import (
     Side, normal, polygon_of_accelerations, polygon_of_velocities, tangential, turning,
@@ -88,6 +88,7 @@ class CompiledLinkage:
             constants,
             *(code for _, code in conditions),
             f"def figure({', '.join(drawn)}):\n    return {figure.code}",
+            self._poses(),
             self._statement(
                 [*(q.name for q in helpers), *(["crank_turns"] if constants else [])],
                 [name for name, _ in conditions],
@@ -112,23 +113,56 @@ class CompiledLinkage:
             f"mode_{p}": rf"\mathrm{{mode}}_{{{p}}}" for p, e in self.formulas.modes.items() if e.is_drawn
         }
         drawing = f"\n    drawing_mm={PAPER_MM}," if self.questions.polygons else ""
-        driver = f"Driver({linkage.angle!r}, {linkage.speed!r}, {linkage.acceleration!r}{self._effort()})"
         return (
             "EXERCISE = Exercise(\n    given={\n" + "\n".join(given) + "\n    },\n"
             f"    helpers=({''.join(f'{n}, ' for n in helpers)}),\n"
             f"    constraints=({''.join(f'{c}, ' for c in conditions)}),\n"
             "    parts=(\n" + "\n".join(parts) + "\n    ),\n"
-            f"    figure=figure,\n    version={linkage.version},\n    symbols={symbols!r},\n    driver={driver},{drawing}\n)"
+            f"    figure=figure,\n    version={linkage.version},\n    symbols={symbols!r},{self._driver()}{drawing}\n)"
         )
 
-    def _effort(self) -> str:
-        return ", effort='torque'" if "torque" in self.formulas.quantities else ""
+    def _driver(self) -> str:
+        """Return the driver as code of a field; nothing where a length drives whose limits nobody knows, or that turns nothing."""
+        linkage = self.linkage
+        if linkage.drive.kind == "turn":
+            effort = ", effort='torque'" if "torque" in self.formulas.quantities else ""
+            return f"\n    driver=Driver({linkage.moved!r}, {linkage.speed!r}, {linkage.acceleration!r}{effort}),"
+        if not self._followed:
+            return ""
+        rates = ", ".join(map(repr, (linkage.moved, *linkage.drive.rates)))
+        return f"\n    driver=Driver({self._followed!r}, poses=poses, jack=Jack({rates}, limits={linkage.drive.limits!r})),"
+
+    @property
+    def _followed(self) -> str:
+        """The angle by which a scene counts where a length drives: that of a body on a fixed pivot, or the first."""
+        linkage, formulas = self.linkage, self.formulas
+        if linkage.drive.kind == "turn" or not all(linkage.drive.limits) or not linkage.speed:
+            return ""
+        turning = [b for b in formulas.order if formulas.turns[b].startswith("theta")]
+        pivoted = [
+            b for b in turning if {*linkage.bodies[b].points} & {*linkage.ground} and b != linkage.driver
+        ]
+        return next((formulas.turns[b] for b in (*pivoted, *turning)), "")
+
+    def _poses(self) -> str:
+        """Return the code of the driven length at an angle of the body by which a scene counts."""
+        if not (angle := self._followed):
+            return ""
+        moved, limits = self.linkage.moved, self.linkage.drive.limits
+        leaves = [n for n in self._leaves((angle,)) if n != moved]
+        graph = "".join(f"{q.name}, " for q in self.formulas.transitive((angle,)))
+        values = ", ".join(f"{n}={n}" for n in leaves)
+        listed = ", ".join(dict.fromkeys(["driven", *leaves, *limits]))
+        return (
+            f"def poses({listed}):\n"
+            f"    return {{{moved!r}: length_at(lambda: ({graph}), {angle!r}, {moved!r}, driven, ({', '.join(limits)}), dict({values}))}}"
+        )
 
     @property
     def _turns(self) -> tuple[str, ...]:
         """Angles that follow from the driver's."""
         turns = dict.fromkeys(self.formulas.turns.values())
-        return tuple(t for t in turns if t.startswith("theta") and t != self.linkage.angle)
+        return tuple(t for t in turns if t.startswith("theta") and t != self.linkage.moved)
 
     def _constraints(self) -> tuple[list[tuple[str, str]], str]:
         """Return the constraints, names with code, and what of the module they need."""
@@ -152,6 +186,8 @@ class CompiledLinkage:
             results.append(_condition(f"{polygon.kind}_vectors_are_long_enough_to_draw", code))
         asked = [q.name for q in self.questions.questions]
         rates = [n for n in asked if n.startswith(("omega", "alpha")) and n in formulas.quantities]
+        if linkage.drive.kind != "turn":  # a length's rate is no angle's
+            rates = []
         if varies and linkage.speed and rates:
             slow = [
                 f"(abs({n}) > 0.02 * {linkage.speed}**{2 if n.startswith('alpha') else 1})".replace("**1", "")
@@ -178,11 +214,11 @@ class CompiledLinkage:
             name = f"required_{number + 1}"
             results.append(_condition(name, found.code))
         if any("crank_turns" in code for _, code in results):
-            leaves = [n for n in self._leaves(self._turns) if n != linkage.angle]
+            leaves = [n for n in self._leaves(self._turns) if n != linkage.moved]
             graph = "".join(f"{q.name}, " for q in formulas.transitive(self._turns))
             helpers = (
                 f"def crank_turns({', '.join(leaves)}):\n"
-                f"    return turns_round(lambda: ({graph}), {self._turns!r}, {linkage.angle!r}, dict({', '.join(f'{n}={n}' for n in leaves)}))"
+                f"    return turns_round(lambda: ({graph}), {self._turns!r}, {linkage.moved!r}, dict({', '.join(f'{n}={n}' for n in leaves)}))"
             )
         modes = [f"other_assembly_{p}" for p in formulas.modes]
         numbers = [
@@ -212,7 +248,7 @@ class CompiledLinkage:
         return list(dict.fromkeys(n for q in needed for n in q.needs if n not in self.formulas.quantities))
 
     def _is_crank(self, *arguments: str) -> QuantityExpression:
-        if arguments != (self.linkage.driver,):
+        if arguments != (self.linkage.driver,) or self.linkage.drive.kind != "turn":
             raise self.linkage.refused(
                 ("given", "require"),
                 Message(
@@ -330,8 +366,8 @@ class CompiledLinkage:
     def _residual(self) -> str:
         """Return the code of the residual: joints and their rates, from the frames of the bodies."""
         linkage, formulas = self.linkage, self.formulas
-        names = dict.fromkeys([*formulas.geometry, linkage.angle, *self._turns])
-        slides = [s.distance for s in linkage.slides.values()]
+        names = dict.fromkeys([*formulas.geometry, linkage.moved, *self._turns])
+        slides = [linkage.moved, *(s.distance for s in linkage.slides.values())]
         names |= dict.fromkeys(
             [
                 *slides,
@@ -352,20 +388,22 @@ class CompiledLinkage:
         stems = ("", "omega", "alpha")[1 : order + 1]
         for stem in stems:
             names |= dict.fromkeys(t.replace("theta", stem, 1) for t in self._turns)
-            own = linkage.angle.replace("theta", stem, 1)
-            if own in linkage.given:
-                names[own] = None
+        names |= dict.fromkeys(n for n in linkage.drive.rates[:order] if n in linkage.given)
+        if linkage.drive.kind == "slide":
+            at = formulas.reference[linkage.driver]
+            names |= dict.fromkeys(f"{kind}_{at}_{axis}" for kind in "va"[:order] for axis in "xy")
         listed = ", ".join(names)
         values = ", ".join(f"{n}={n}" for n in names)
-        return f"def residual({listed}):\n    return closure_gaps(MECHANISM, TRACKS, SIDES, {linkage.angle!r}, {order}, dict({values}))"
+        return f"def residual({listed}):\n    return closure_gaps(MECHANISM, TRACKS, SIDES, {linkage.moved!r}, {order}, dict({values}))"
 
     def _mechanism(self) -> str:
         linkage, formulas = self.linkage, self.formulas
         ground = ", ".join(f"{p!r}: {_place(place)}" for p, place in linkage.ground.items())
         bodies = []
         held = set(linkage.ground)
+        jack = linkage.driver if linkage.drive.kind == "jack" else ""
         for name in formulas.order:
-            if name == GROUND:
+            if name in (GROUND, jack):
                 continue
             body = linkage.bodies[name]
             turn = formulas.turns[name]
@@ -384,6 +422,16 @@ class CompiledLinkage:
         slides = [
             f"        Slide({s.at!r}, {s.of!r}, {s.on!r}, {_code(s.along)})," for s in linkage.slides.values()
         ]
+        pushed = ""
+        if jack:
+            start, end = linkage.bodies[jack].points
+            turn = repr(formulas.turns[jack])
+            bodies += [
+                f"        Body({b!r}, {turn}, {p!r})," for b, p in ((jack, start), (linkage.drive.rod, end))
+            ]
+            slides.append(f"        Slide({end!r}, {linkage.drive.rod!r}, {jack!r}),")
+        if self._followed:
+            pushed = end if jack else formulas.reference[linkage.driver]
         gears = [
             f"        Gear({g.first!r}, {g.second!r}, {g.carrier!r}, ({_code(g.radii[0])}, {_code(g.radii[1])}), {g.inner}"
             f"{self._centres(g.first, g.second, g.carrier)}),"
@@ -401,6 +449,8 @@ class CompiledLinkage:
         for name, lines in (("slides", slides), ("gears", gears), ("loads", loads)):
             if lines:
                 pieces += [f"    {name}=(", *lines, "    ),"]
+        if pushed:
+            pieces.append(f"    pushed={pushed!r},")
         return "Mechanism(\n" + "\n".join(pieces) + "\n)"
 
     def _holder(self, body: str) -> str:
@@ -410,10 +460,17 @@ class CompiledLinkage:
         return next((p for p in points if set(self.linkage.holders(p)) & set(before)), "")
 
     def _tracks(self) -> list[str]:
-        return [
+        linkage = self.linkage
+        tracks = [
             f"SlideTrack({s.at!r}, {s.of!r}, {s.on!r}, {_place(s.through)}, {_code(s.along)}, {s.distance!r}), "
-            for s in self.linkage.slides.values()
+            for s in linkage.slides.values()
         ]
+        if linkage.drive.kind == "jack":
+            end = [*linkage.bodies[linkage.driver].points][1]
+            tracks.append(
+                f"SlideTrack({end!r}, {linkage.drive.rod!r}, {linkage.driver!r}, 0.0, 0.0, {linkage.moved!r}), "
+            )
+        return tracks
 
     def _sides(self) -> list[str]:
         """Return the triangles of the groups that have a side: inner joint, both outer ones, and the quantity of the side."""

@@ -31,7 +31,10 @@ class FigureWriter:
         }
         self._ground()
         for body in self.linkage.bodies:
-            self._body(body)
+            if self.linkage.drive.kind == "jack" and body == self.linkage.driver:
+                self._jack(body)
+            else:
+                self._body(body)
         for slide in self.linkage.slides.values():
             self._slide(slide)
         self._gears()
@@ -67,6 +70,13 @@ class FigureWriter:
             self._guide(body, points)
         elif body not in self._blocks and len(points) > 1:
             self._plate(body, points)
+
+    def _jack(self, body: str) -> None:
+        """Draw the cylinder, and the rod that comes out of it."""
+        start, end = map(self._at, self.linkage.bodies[body].points)
+        middle = f"{start} + 0.6 * ({end} - {start})"
+        self._add(f"slot_link({start}, {middle})")
+        self._add(f'link({middle}, {end}, label=r"{self.formulas.symbol(self.linkage.moved)}")')
 
     def _plate(self, body: str, points: list[str]) -> None:
         formulas = self.formulas
@@ -127,10 +137,13 @@ class FigureWriter:
 
     @property
     def _crank(self) -> str:
-        """Length of the driving body, as code."""
-        driver = self.linkage.bodies[self.linkage.driver]
-        end = next((p for p in driver.points if p != driver.at), driver.at)
-        return f"abs({self._at(end)} - {self._at(driver.at)})"
+        """Length of the driving body, or where that is a slider of the first bar, as code."""
+        linkage = self.linkage
+        bars = [b for b in (linkage.bodies[linkage.driver], *linkage.bodies.values()) if len(b.points) > 1]
+        points = [*bars[0].points] if bars else [linkage.bodies[linkage.driver].at] * 2
+        start = bars[0].at if bars and bars[0].at in points else points[0]
+        end = next((p for p in points if p != start), start)
+        return f"abs({self._at(end)} - {self._at(start)})"
 
     def _through(self, slide: SlideEntry) -> str:
         if slide.through_name:
@@ -165,7 +178,14 @@ class FigureWriter:
                     self._add(f"circle({self._at(shared[0])}, {radius.code}, dashed=True)")
 
     def _driver(self) -> None:
-        start, angle = self._at(self.linkage.bodies[self.linkage.driver].at), self.linkage.angle
+        if self.linkage.drive.kind == "jack":
+            return
+        if self.linkage.drive.kind == "slide":
+            slide = self.linkage.slides[self.linkage.slides_driven]
+            label = self.formulas.symbol(slide.distance)
+            self._add(f'line({self._through(slide)}, {self._at(slide.at)}, dashed=True, label=r"{label}")')
+            return
+        start, angle = self._at(self.linkage.bodies[self.linkage.driver].at), self.linkage.moved
         self._add(f"line({start}, {start} + 0.6 * {self._crank}, dashed=True)")
         self._add(f'angle_mark({start}, 0, {angle}, r"{self.formulas.symbol(angle)}")')
 

@@ -1,4 +1,4 @@
-"""What a mechanism's file states: places, bodies, joints, loads, and the whole, as data."""
+"""Entries of a mechanism's file as data: places, bodies, joints, loads, and the whole."""
 
 from __future__ import annotations
 
@@ -83,6 +83,30 @@ class GearEntry:
 
 
 @dataclass(frozen=True)
+class DriverEntry:
+    """Driver of a mechanism.
+
+    ``kind``: a ``turn`` of the body about a point of the ground, a ``slide`` of it on the ground, or a ``jack`` whose cylinder and rod
+    are pinned to other bodies; ``moved`` is the quantity that says how far, an angle or a length. The body of a jack holds its two
+    pins, the second at the distance ``moved`` from the first; ``rod`` is the name of the half that comes out. ``limits`` are the
+    quantities between which a length goes.
+    """
+
+    kind: str
+    body: str
+    moved: str
+    rod: str = ""
+    limits: tuple[str, str] = ("", "")
+
+    @property
+    def rates(self) -> tuple[str, str]:
+        """Names of its speed and of its acceleration."""
+        if self.kind == "turn":
+            return self.moved.replace("theta", "omega", 1), self.moved.replace("theta", "alpha", 1)
+        return f"{self.moved}_dot", f"{self.moved}_ddot"
+
+
+@dataclass(frozen=True)
 class AssemblyEntry:
     """Ways to assemble a group: ``left`` and ``right`` of a line between two points, or ``ahead`` and ``behind`` on a slide; one, or
     those among which a variant draws."""
@@ -98,10 +122,10 @@ class AssemblyEntry:
 
 @dataclass(frozen=True)
 class NearEntry:
-    """Start of Newton's method: places of points, mm, with the driver at an angle, degrees."""
+    """Start of Newton's method: places of points, mm, with the driver at an angle, degrees, or at a length, mm."""
 
     places: Mapping[str, complex]
-    angle: float
+    driver: float
 
 
 @dataclass(frozen=True)
@@ -132,9 +156,8 @@ class LinkageFile:
     ask: Mapping[str, Any]
     loads: tuple[LoadEntry, ...]
     required: tuple[str, ...]  #: conditions on the draws
-    driver: str  #: the body that is driven
-    angle: str  #: the quantity that turns it
-    speed: str = ""  #: '' where the file gives none
+    drive: DriverEntry
+    speed: str = ""  #: of the driver; '' where the file gives none
     acceleration: str = ""
     name: str = field(default="")
     known: tuple[
@@ -166,7 +189,34 @@ class LinkageFile:
         return {p: bodies for p, bodies in shared.items() if len(bodies) > 1}
 
     @property
+    def driver(self) -> str:
+        """The body that is driven."""
+        return self.drive.body
+
+    @property
+    def moved(self) -> str:
+        """The quantity of the driver: an angle, or a length."""
+        return self.drive.moved
+
+    @property
+    def counts(self) -> tuple[int, int, int]:
+        """Moving bodies, pins and slides, and contacts of teeth; a jack is two bodies and the slide between them."""
+        pins = sum(len(bodies) - 1 for bodies in self.pins.values())
+        jack = int(self.drive.kind == "jack")
+        return len(self.bodies) + jack, pins + len(self.slides) + jack, len(self.gears)
+
+    @property
     def mobility(self) -> int:
         """Degrees of freedom by the count 3 n - 2 b - h."""
-        pins = sum(len(bodies) - 1 for bodies in self.pins.values())
-        return 3 * len(self.bodies) - 2 * (pins + len(self.slides)) - len(self.gears)
+        bodies, pairs, higher = self.counts
+        return 3 * bodies - 2 * pairs - higher
+
+    @property
+    def slides_driven(self) -> str:
+        """The point that slides where a slide drives; '' for any other driver."""
+        return next((p for p, s in self.slides.items() if s.distance == self.moved), "")
+
+    @property
+    def followed_slides(self) -> tuple[SlideEntry, ...]:
+        """Slides whose distance follows from the driver."""
+        return tuple(s for s in self.slides.values() if s.distance != self.moved)

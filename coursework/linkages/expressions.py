@@ -11,12 +11,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from coursework.degrees import atan2, cos, sin, sqrt, tan
+from coursework.degrees import acos, asin, atan2, cos, sin, sqrt, tan
 from coursework.errors import WrongUnit, WrongValue, nearest
 from coursework.messages import Message
 from coursework.parsing.units import Unit, convert, find_unit, parse_unit
 
-FUNCTIONS = ("sin", "cos", "tan", "sqrt", "abs", "atan2", "hypot", "min", "max")
+FUNCTIONS = ("sin", "cos", "tan", "sqrt", "abs", "asin", "acos", "atan2", "hypot", "min", "max")
+DEGREES = {f.__name__: f for f in (sin, cos, tan, asin, acos, atan2, sqrt)}  #: of code without quantities
 _ARGUMENTS = {"atan2": 2, "hypot": 2, "min": 2, "max": 2}  #: of functions that take more than one
 _MOST_POWER, _DEEPEST, _LARGEST = 9, 40, 1e12
 _IN_CODE = {"min": "np.minimum", "max": "np.maximum", "hypot": "np.hypot"}
@@ -83,7 +84,7 @@ def _value(code: str) -> str:
     """Return the value of code without quantities, which is made of what an expression may hold alone."""
     if _number(code) is not None:
         return code
-    known = {"np": np, "sin": sin, "cos": cos, "tan": tan, "sqrt": sqrt, "abs": abs, "atan2": atan2}
+    known = {"np": np, "abs": abs, **DEGREES}
     try:
         with np.errstate(all="ignore"):
             return _written(float(eval(code, {"__builtins__": {}, **known})))
@@ -232,7 +233,7 @@ class ExpressionReader:
             return name
 
         try:
-            tree = ast.parse(_LITERAL.sub(literal, text).strip(), mode="eval").body
+            tree = ast.parse(_LITERAL.sub(literal, text).replace("^", "**").strip(), mode="eval").body
         except (SyntaxError, ValueError, RecursionError):
             raise WrongValue(Message("{text} is no expression", text=repr(text))) from None
         if _depth(tree) > _DEEPEST:
@@ -274,7 +275,7 @@ class ExpressionReader:
                     )
                 read = [self._of(a, literals) for a in arguments]
                 code = f"{_IN_CODE.get(name, name)}({', '.join(r[0] for r in read)})"
-                unit = {"atan2": "deg", "sqrt": None}.get(
+                unit = {"atan2": "deg", "asin": "deg", "acos": "deg", "sqrt": None}.get(
                     name, read[0][2] if read and name in ("abs", "hypot", "min", "max") else "1"
                 )
                 return code, _joined(*(r[1] for r in read)), unit

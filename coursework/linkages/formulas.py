@@ -12,7 +12,7 @@ from coursework.linkages.entries import (
 )
 from coursework.linkages.groups import Dyad, Group, HigherGroup, Wheel
 from coursework.linkages.higher_groups import HigherGroupWriter
-from coursework.linkages.points import Arm, Track, UsualMistake, local_plane, over, rotated
+from coursework.linkages.points import Arm, SlideLine, UsualMistake, dotted, local_plane, over, rotated
 from coursework.linkages.terms import Heading, Plane, Sum
 from coursework.messages import Message
 
@@ -165,39 +165,53 @@ class FormulaWriter(HigherGroupWriter):
         below_p = lever_p.times(between.sin)
         below_q = lever_q.times((-between).sin)
         arms = f"{self.complex(B)} - {self.complex(P)}, {self.complex(B)} - {self.complex(Q)}"
-        v_P, v_Q = self.velocity(P), self.velocity(Q)
-        rates = f"_rates_{B}"
-        self.hide(rates, f"dyads.rrr_rates({arms}, ({v_P.complex},), ({v_Q.complex},))")
-        for body, own, heading, below, start, index in (
-            (p, v_Q - v_P, to_q.heading, below_p, words["q"], 0),
-            (q, v_P - v_Q, to_p.heading, below_q, words["p"], 1),
+        rates, gains = f"_rates_{B}", f"_gains_{B}"
+        v_p, v_q = self._own(P, p, to_p, "v"), self._own(Q, q, to_q, "v")
+        self.hide(rates, f"dyads.rrr_rates({arms}, ({v_p.complex},), ({v_q.complex},))")
+        jack = "_jack" if self.linkage.driver in group.bodies else ""
+
+        def apart(kind: str) -> tuple[Sum, Sum]:
+            """Return what the rates of one end have more than those of the other, along ``q`` and along ``p``."""
+            first, last = self._motion(P, kind), self._motion(Q, kind)
+            results = []
+            for gap, heading, sign in ((last - first, to_q.heading, 1), (first - last, to_p.heading, -1)):
+                grown = self.growth(q, to_q, kind, heading).x - self.growth(p, to_p, kind, heading).x
+                results.append(gap.along(heading) + (grown if sign > 0 else -grown))
+            return results[0], results[1]
+
+        for body, own, below, start, index in zip(
+            (p, q), apart("v"), (below_p, below_q), (q, p), (0, 1), strict=True
         ):
             self.write(
-                self.omega(body), over(own.along(heading), below), "rad/s", "omega_rrr",
+                self.omega(body), over(own, below), "rad/s", f"omega_rrr{jack}",
                 words={**words, "body": body, "other": start}, stable=f"{rates}[{index}][0]",
             )  # fmt: skip
-        a_P, a_Q = self.acceleration(P), self.acceleration(Q)
-        gains = f"_gains_{B}"
+        a_p, a_q = self._own(P, p, to_p, "a"), self._own(Q, q, to_q, "a")
         self.hide(
             gains,
-            f"dyads.rrr_rates({arms}, ({v_P.complex}, {a_P.complex}), ({v_Q.complex}, {a_Q.complex}))",
+            f"dyads.rrr_rates({arms}, ({v_p.complex}, {a_p.complex}), ({v_q.complex}, {a_q.complex}))",
         )
         w_p, w_q = f"{self.omega(p)}**2", f"{self.omega(q)}**2"
-        above_p = (a_Q - a_P).along(to_q.heading) + lever_p.times(w_p, between.cos) - lever_q.times(w_q)
-        above_q = (a_P - a_Q).along(to_p.heading) - lever_p.times(w_p) + lever_q.times(w_q, between.cos)
+        bare_p, bare_q = apart("a")
+        above_p = bare_p + lever_p.times(w_p, between.cos) - lever_q.times(w_q)
+        above_q = bare_q - lever_p.times(w_p) + lever_q.times(w_q, between.cos)
         self.sines[B] = between.sin
         self.mistakes.append(
             UsualMistake(
                 f"normal_terms_forgotten_{B}", (self.alpha(p), self.alpha(q)),
-                (over((a_Q - a_P).along(to_q.heading), below_p), over((a_P - a_Q).along(to_p.heading), below_q)),
+                (over(bare_p, below_p), over(bare_q, below_q)),
                 "normal_terms_forgotten", words,
             )
         )  # fmt: skip
         for body, above, below, other, index in ((p, above_p, below_p, q, 0), (q, above_q, below_q, p, 1)):
             self.write(
-                self.alpha(body), over(above, below), "rad/s^2", "alpha_rrr",
+                self.alpha(body), over(above, below), "rad/s^2", f"alpha_rrr{jack}",
                 words={**words, "body": body, "other": other}, stable=f"{gains}[{index}][1]",
             )  # fmt: skip
+
+    def _own(self, start: str, body: str, arm: Arm, kind: str) -> Plane:
+        """Return the velocity, or the acceleration, that the end of an arm has without the turning of its body."""
+        return self._motion(start, kind) + self.growth(body, arm, kind)
 
     def _rrp(self, group: Dyad) -> None:
         P, B, slide = group.outer_p, group.inner, group.outer_q
@@ -222,10 +236,10 @@ class FormulaWriter(HigherGroupWriter):
         ahead = rise.along(heading)
         run = f"{ahead.code} + {side} * {reach}" if not ahead.vanishes else f"{side} * {reach}"
         distance = self.write(
-            slide.distance, run if sign > 0 else f"-({run})", "mm", "slide_rrp", self._slide_symbol(slide), words=words,
+            slide.distance, run if sign > 0 else f"-({run})", "mm", "slide_rrp", self.slide_symbol(slide), words=words,
             stable=f"{'' if sign > 0 else '-'}(({point} - {start}) * np.conj({unit})).real",
         )  # fmt: skip
-        self._write_end(B, track.moved(base, distance), words, point)
+        self.write_end(B, track.moved(base, distance), words, point)
         away = self.at(B) - self.at(P)
         self._write_turn(
             p, f"atan2({away.y.code}, {away.x.code})", arm, arm.heading - self.heading(p), P, point, "turn_by_ends",
@@ -235,20 +249,11 @@ class FormulaWriter(HigherGroupWriter):
         self._finish_rod(q, B)
         self._rates_rrp(words, arm, track, distance)
 
-    def _write_end(self, point: str, there: Plane, words: Mapping[str, str], hidden: str) -> None:
-        for axis, component, half in (("x", there.x, "real"), ("y", there.y, "imag")):
-            self.write(
-                f"{axis}{point}", component.code, "mm", f"end_{axis}", words=words, stable=f"{hidden}.{half}"
-            )
-
-    def _slide_symbol(self, slide: SlideEntry) -> str:
-        return f"s_{{{slide.at}}}" if slide.distance == f"s_{slide.at}" else ""
-
     def slide_rates(self, slide: SlideEntry) -> tuple[str, str]:
         """Return the names of the speed along a slide, and of its rate."""
         return f"{slide.distance}_dot", f"{slide.distance}_ddot"
 
-    def _rates_rrp(self, words: Mapping[str, str], arm: Arm, track: Track, distance: str) -> None:
+    def _rates_rrp(self, words: Mapping[str, str], arm: Arm, track: SlideLine, distance: str) -> None:
         placed, _, sign, heading = track
         P, B, p = words["P"], words["B"], words["p"]
         speed, gain = f"{distance}_dot", f"{distance}_ddot"
@@ -258,32 +263,36 @@ class FormulaWriter(HigherGroupWriter):
         below = lever.times(between.cos)
         v_P, v_c = self.velocity(P), self.carried(placed, self.at(B), "v")
         moved = "" if v_c.vanishes else "_moved"
+        grown = self.growth(p, arm, "v", heading)
         self.write(
             self.omega(p),
-            over((v_c - v_P).across(heading), below),
+            over((v_c - v_P).across(heading) - grown.y, below),
             "rad/s",
             f"omega_rrp{moved}",
             words={**words, "body": p},
         )
-        along = (v_P - v_c).along(heading) - lever.times(self.omega(p), between.sin)
+        along = (v_P - v_c).along(heading) + grown.x - lever.times(self.omega(p), between.sin)
         self.write(
             speed,
             along.times(sign=sign).code,
             "mm/s",
             f"slide_rate_rrp{moved}",
-            _dotted(symbol, 1),
+            dotted(symbol, 1),
             words=words,
         )
         self.write_rates(B, track.moved(v_c, speed), "v", "slides", words)
         a_P, a_c = self.acceleration(P), self.carried(placed, self.at(B), "a")
-        coriolis = self._coriolis(track, speed)
+        coriolis = self.coriolis(track, speed)
         square = f"{self.omega(p)}**2"
-        above = (a_c - a_P).across(heading) + coriolis + lever.times(square, between.sin)
+        grown = self.growth(p, arm, "a", heading)
+        across = (a_c - a_P).across(heading) - grown.y
+        above = across + coriolis + lever.times(square, between.sin)
         self.write(
             self.alpha(p), over(above, below), "rad/s^2", f"alpha_rrp{moved}", words={**words, "body": p}
         )
         along = (
             (a_P - a_c).along(heading)
+            + grown.x
             - lever.times(self.alpha(p), between.sin)
             - lever.times(square, between.cos)
         )
@@ -292,30 +301,26 @@ class FormulaWriter(HigherGroupWriter):
             along.times(sign=sign).code,
             "mm/s^2",
             f"slide_gain_rrp{moved}",
-            _dotted(symbol, 2),
+            dotted(symbol, 2),
             words=words,
         )
         self.write_rates(B, track.moved(a_c, gain) + track.across(coriolis), "a", "slides", words)
         self.sines[B] = between.cos
-        bare = (a_P - a_c).along(heading) - lever.times(self.alpha(p), between.sin)
+        bare = (a_P - a_c).along(heading) + grown.x - lever.times(self.alpha(p), between.sin)
         self.mistakes.append(
             UsualMistake(
                 f"normal_terms_forgotten_{B}", (self.alpha(p), gain),
-                (over((a_c - a_P).across(heading) + coriolis, below), bare.times(sign=sign).code),
+                (over(across + coriolis, below), bare.times(sign=sign).code),
                 "normal_terms_forgotten", words,
             )
         )  # fmt: skip
         if not coriolis.vanishes:
-            wrong = over((a_c - a_P).across(heading) + lever.times(square, between.sin), below)
+            wrong = over(across + lever.times(square, between.sin), below)
             self.mistakes.append(
                 UsualMistake(
                     f"coriolis_forgotten_{B}", (self.alpha(p),), (wrong,), "coriolis_forgotten", words
                 )
             )
-
-    def _coriolis(self, track: Track, speed: str) -> Sum:
-        """Return the Coriolis acceleration of what slides, to the left of its line."""
-        return Sum.of(speed).times("2", self.omega(track.placed), sign=track.sign)
 
     def _rpr(self, group: Dyad) -> None:
         P, slide, Q = group.outer_p, group.inner, group.outer_q
@@ -344,7 +349,7 @@ class FormulaWriter(HigherGroupWriter):
         run = f"{side} * {reach}"
         rest = "" if ahead.vanishes else f" - {ahead.factor}"
         distance = self.write(
-            slide.distance, run + rest, "mm", "slide_rpr_offset" if offset else "slide_rpr", self._slide_symbol(slide), words=words,
+            slide.distance, run + rest, "mm", "slide_rpr_offset" if offset else "slide_rpr", self.slide_symbol(slide), words=words,
             stable=f"{pair}[1]{rest}",
         )  # fmt: skip
         whole = Sum.of(distance) + ahead
@@ -370,7 +375,7 @@ class FormulaWriter(HigherGroupWriter):
             (v.along(heading) + shift.times(rate)).code,
             "mm/s",
             f"slide_rate_rpr{moved}",
-            _dotted(symbol, 1),
+            dotted(symbol, 1),
             words=words,
         )
         a = self.acceleration(P) - self.acceleration(Q)
@@ -381,7 +386,7 @@ class FormulaWriter(HigherGroupWriter):
             UsualMistake(f"coriolis_forgotten_{slide.at}", (growth,), (wrong,), "coriolis_forgotten", words)
         )
         along = a.along(heading) + shift.times(growth) + whole.times(f"{rate}**2")
-        self.write(gain, along.code, "mm/s^2", f"slide_gain_rpr{moved}", _dotted(symbol, 2), words=words)
+        self.write(gain, along.code, "mm/s^2", f"slide_gain_rpr{moved}", dotted(symbol, 2), words=words)
 
     def _two_slides(self, group: Dyad) -> None:
         """Write a point that is on two lines: the pin of two blocks, or a placed pin that two slides reach."""
@@ -408,7 +413,7 @@ class FormulaWriter(HigherGroupWriter):
             base = first.base + rotated(self.local(P, p) - end, frame)
             first = first._replace(base=base)
             way = frame + Heading.of(inner.along.code)
-            second = Track(first.placed, base, 1 if inner.of == p else -1, way)
+            second = SlideLine(first.placed, base, 1 if inner.of == p else -1, way)
             one, other = outer, inner
             gap = self.at(P) - base
             name = P
@@ -444,7 +449,7 @@ class FormulaWriter(HigherGroupWriter):
 
         def write(vector: Plane, ending: str, unit: str, step: str, order: int) -> None:
             for slide, code in zip((one, other), split(vector), strict=True):
-                symbol = _dotted(self._slide_symbol(slide), order)
+                symbol = dotted(self.slide_symbol(slide), order)
                 self.write(
                     slide.distance + ending, code, unit, step, symbol, words={**words, "s": slide.distance}
                 )
@@ -459,14 +464,14 @@ class FormulaWriter(HigherGroupWriter):
             hidden = self.hide(
                 f"_{name}", f"dyads.prp({start_1} + 0j, {units[0]}, {start_2} + 0j, {units[1]})"
             )
-            self._write_end(name, first.moved(first.base, one.distance), words, hidden)
+            self.write_end(name, first.moved(first.base, one.distance), words, hidden)
             self._finish_rod(group.p, name)
             self._finish_rod(group.q, name)
             carried = [self.carried(t.placed, self.at(name), "v") for t in (first, second)]
             write(carried[1] - carried[0], "_dot", "mm/s", f"slides_{kind}_rate", 1)
             self.write_rates(name, first.moved(carried[0], f"{one.distance}_dot"), "v", "slides", words)
             turned = [
-                t.across(self._coriolis(t, f"{s.distance}_dot")) for s, t in ((one, first), (other, second))
+                t.across(self.coriolis(t, f"{s.distance}_dot")) for s, t in ((one, first), (other, second))
             ]
             carried = [self.carried(t.placed, self.at(name), "a") for t in (first, second)]
             gains = carried[1] + turned[1] - carried[0] - turned[0]
@@ -484,19 +489,17 @@ class FormulaWriter(HigherGroupWriter):
             hidden,
             f"_line_{moved} + {'-' if track.sign < 0 else ''}polar({one.distance}, {track.heading.code})",
         )
-        self._write_end(moved, track.moved(track.base, one.distance), words, hidden)
+        self.write_end(moved, track.moved(track.base, one.distance), words, hidden)
         self._finish_rod(group.q, moved)
         v = self.velocity(name) - self.carried(track.placed, self.at(name), "v")
         write(v, "_dot", "mm/s", f"slides_{kind}_rate", 1)
         there = track.moved(self.carried(track.placed, self.at(moved), "v"), f"{one.distance}_dot")
         self.write_rates(moved, there, "v", "slides", words)
-        turned = [
-            t.across(self._coriolis(t, f"{s.distance}_dot")) for s, t in ((one, first), (other, second))
-        ]
+        turned = [t.across(self.coriolis(t, f"{s.distance}_dot")) for s, t in ((one, first), (other, second))]
         a = self.acceleration(name) - self.carried(track.placed, self.at(name), "a") - turned[0] - turned[1]
         write(a, "_ddot", "mm/s^2", f"slides_{kind}_gain", 2)
         there = track.moved(self.carried(track.placed, self.at(moved), "a"), f"{one.distance}_ddot")
-        own = track.across(self._coriolis(track, f"{one.distance}_dot"))
+        own = track.across(self.coriolis(track, f"{one.distance}_dot"))
         self.write_rates(moved, there + own, "a", "slides", words)
 
     def _wheel(self, wheel: Wheel) -> None:
@@ -524,10 +527,3 @@ class FormulaWriter(HigherGroupWriter):
         self._finish_rod(body, wheel.at)
         self.write(self.omega(body), rolled(self.omega), "rad/s", "omega_gear", words=words)
         self.write(self.alpha(body), rolled(self.alpha), "rad/s^2", "alpha_gear", words=words)
-
-
-def _dotted(symbol: str, order: int) -> str:
-    if not symbol or not order:
-        return symbol
-    stem, _, index = symbol.partition("_")
-    return rf"\{'d' * order}ot{{{stem}}}" + (f"_{index}" if index else "")

@@ -2,18 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from functools import cached_property
 
 import numpy as np
 
 from coursework.linkages.entries import (
     GROUND,
     NearEntry,
+    SlideEntry,
 )
+from coursework.linkages.expressions import QuantityExpression
 from coursework.linkages.groups import HigherGroup
 from coursework.linkages.loop_chains import LoopWriter, back, closure_latex, vector_code
-from coursework.linkages.points import Chain, middle, rotated, value_of
-from coursework.linkages.terms import Heading
+from coursework.linkages.points import Chain, dotted, local_plane, middle, rotated, value_of
+from coursework.linkages.terms import Plane, Sum
 from coursework.messages import Message
 
 
@@ -26,24 +29,22 @@ class HigherGroupWriter(LoopWriter):
             raise linkage.refused(
                 ("assembly",),
                 Message(
-                    'bodies {found} are one group of class {value}: say from where Newton\'s method starts: near = {{ angle = "60 deg", E = ["120 mm", "80 mm"], … }}',
+                    'bodies {found} are one group of class {value}: say from where Newton\'s method starts: near = {{ {driver}, E = ["120 mm", "80 mm"], … }}',
                     found=", ".join(group.bodies),
                     value="I" * group.rank if group.rank < 4 else group.rank,
+                    driver='angle = "60 deg"' if linkage.drive.kind == "turn" else 'length = "60 mm"',
                 ),
             )
         slides = [s for s in linkage.slides.values() if {s.of, s.on} & {*group.bodies}]
-        if slides:
-            raise linkage.refused(
-                ("slides", slides[0].at),
-                Message("a group of class III or higher is solved if all its joints are pins"),
-            )
         number = 1 + sum(name.startswith("_chain_") for name in self.quantities)
         loops, placed = self._loops(group)
         self.loops |= {f"loop_{number}_{k}": loop for k, loop in enumerate(loops, start=1)}
-        unknowns = [self.turns[body] for body in group.bodies]
+        placing = {"0", *(self.turns[b] for b in self.order), linkage.moved}
+        turns = {t: b for b in group.bodies if (t := self.turns[b]).startswith("theta") and t not in placing}
+        unknowns = [*turns, *(s.distance for s in slides)]
         names = [v[i] for loop in loops for v in loop for i in (0, 1, 3) if v[i].isidentifier()]
         known = tuple(n for n in dict.fromkeys(names) if n not in unknowns)
-        near = {self.turns[body]: self._near_angle(body, linkage.near) for body in group.bodies}
+        near = self._near(turns, slides, linkage.near)
         moving = [n for n in placed if n in self.quantities]
         needed = self.transitive(moving)
         leaves = tuple(dict.fromkeys(n for q in needed for n in q.needs if n not in self.quantities))
@@ -51,48 +52,69 @@ class HigherGroupWriter(LoopWriter):
         self.followed[solved] = tuple(q.name for q in needed)
         listed = "".join(f"({', '.join(map(vector_code, loop))},), " for loop in loops)
         self.constants[chain] = (
-            f"LargeGroup(({listed}), {tuple(unknowns)!r}, {near!r}, {linkage.angle!r}, {linkage.near.angle!r}, "
+            f"LargeGroup(({listed}), {tuple(unknowns)!r}, {near!r}, {linkage.moved!r}, {linkage.near.driver!r}, {self._step!r}, "
             f"lambda: ({''.join(f'{q.name}, ' for q in needed)}))"
         )
-        arguments = dict.fromkeys([linkage.angle, *leaves, *(n for n in known if n not in moving)])
+        arguments = dict.fromkeys([linkage.moved, *leaves, *(n for n in known if n not in moving)])
         words = {"bodies": ", ".join(group.bodies), "loops": self._loop_text(loops)}
         self.hide(solved, f"{chain}.pose(dict({', '.join(f'{n}={n}' for n in arguments)}))")
-        for body in group.bodies:
-            turn = self.turns[body]
+        for turn, body in turns.items():
+            code, told = f"{solved}.degrees('{turn}')", {**words, "body": body}
+            self.write(turn, code, "deg", "turn_large", words=told, silent=True)
+        for slide in slides:
+            code, told = f"{solved}.values['{slide.distance}']", {**words, "s": slide.distance}
             self.write(
-                turn,
-                f"{solved}.degrees('{turn}')",
-                "deg",
-                "turn_large",
-                words={**words, "body": body},
-                silent=True,
+                slide.distance, code, "mm", "slide_large", self.slide_symbol(slide), words=told, silent=True
             )
-        for body in group.bodies:
-            self._finish_rod(body, self._reachable(body))
+        self._finish(group, words)
         for order, rates, stem in ((1, "_rates", "omega"), (2, "_gains", "alpha")):
             pairs = []
             for name in moving:
                 own = [self._motion(name[1:], kind) for kind in ("v", "a")[:order]]
                 codes = ", ".join((v.x if name[0] == "x" else v.y).code for v in own)
                 pairs.append(f"{name}=({codes},)")
+            if linkage.drive.kind == "jack" and linkage.driver in group.bodies:
+                codes = ", ".join((linkage.drive.rates[0], linkage.acceleration or "0.0")[:order])
+                pairs.append(f"{linkage.moved}=({codes},)")
             hidden = self.hide(
                 f"{rates}_{number}", f"{chain}.rates({solved}, {order}, dict({', '.join(pairs)}))"
             )
-            for body in group.bodies:
-                name, unit = (self.omega(body), "rad/s") if order == 1 else (self.alpha(body), "rad/s^2")
-                code = f"{hidden}['{self.turns[body]}'][{order - 1}]"
-                self.write(name, code, unit, f"{stem}_large", words={**words, "body": body}, silent=True)
+            power = "" if order == 1 else "^2"
+            for turn, body in turns.items():
+                code, told = f"{hidden}['{turn}'][{order - 1}]", {**words, "body": body}
+                self.write(
+                    turn.replace("theta", stem, 1),
+                    code,
+                    f"rad/s{power}",
+                    f"{stem}_large",
+                    words=told,
+                    silent=True,
+                )
+            for slide in slides:
+                code, told = f"{hidden}['{slide.distance}'][{order - 1}]", {**words, "s": slide.distance}
+                name, symbol = (
+                    f"{slide.distance}_{'d' * order}ot",
+                    dotted(self.quantities[slide.distance].symbol, order),
+                )
+                self.write(name, code, f"mm/s{power}", f"{stem}_large", symbol, words=told, silent=True)
 
     def _loops(self, group: HigherGroup) -> tuple[list[Chain], list[str]]:
         """Return the independent loops of a group, and the names of the coordinates of placed points in them."""
-        joints = {
-            point: [b for b in bodies if b in group.bodies]
-            for point, bodies in self.linkage.pins.items()
-            if set(bodies) & set(group.bodies)
-        }
-        outer = [p for p in joints if set(self.linkage.holders(p)) & set(self.order)]
+        slides = self.linkage.slides
+        joints: dict[str, list[str]] = {}
+        for point in self.linkage.points:
+            on = (slides[point].on,) if point in slides else ()
+            joined = dict.fromkeys([*self.linkage.holders(point), *on])
+            if len(joined) > 1 and {*joined} & {*group.bodies}:
+                joints[point] = [b for b in joined if b in group.bodies]
         placed: list[str] = []
-        ways = {point: self._reached(point, placed) for point in outer}  #: from the origin to each point
+        ways: dict[str, Chain] = {}  #: from the origin to each point
+        for point in joints:
+            if {*self.linkage.holders(point)} & {*self.order}:
+                ways[point] = self._reached(point, placed)
+            elif point in slides and slides[point].on in self.order:
+                ways[point] = self._slid_on(slides[point], placed)
+        outer = [*ways]
         entries: dict[str, str] = {}  #: of each body, the point from which it is followed
         loops: list[Chain] = []
         waiting, done = list(outer), set()
@@ -112,7 +134,7 @@ class HigherGroupWriter(LoopWriter):
                     waiting.append(body)
                     continue
                 start = entries[body]
-                there = [*ways[start], *self._steps(body, start, point)]
+                there = [*ways[start], *self._leg(body, start, point)]
                 if point in ways:
                     loops.append([*there, *back(ways[point])])
                 else:
@@ -120,44 +142,145 @@ class HigherGroupWriter(LoopWriter):
                     waiting.append(point)
         return loops, list(dict.fromkeys(placed))
 
-    def _near_angle(self, body: str, near: NearEntry) -> float:
-        """Return the angle of a body, radians, from the rough places of two of its points."""
-        linkage = self.linkage
-        values = {n: middle(entry) for n, entry in linkage.given.items()}
-        values[linkage.angle] = near.angle
-        places = dict(near.places)
-        for point in linkage.bodies[body].points:
-            if point not in places and point in linkage.ground:
-                places[point] = value_of(self.local(point, GROUND), values)
-            elif point not in places and point in linkage.bodies[linkage.driver].points:
-                crank = linkage.bodies[linkage.driver]
-                turned = value_of(rotated(self.local(point, crank.name), Heading.of(linkage.angle)), values)
-                places[point] = value_of(self.local(crank.at, GROUND), values) + turned
-        points = [p for p in linkage.bodies[body].points if p in places]
-        if len(points) < 2:
-            raise linkage.refused(
-                ("assembly", "near"),
-                Message(
-                    "near tells the places of two points of body {body}; found {value} of {found}",
-                    body=body,
-                    value=", ".join(points) or "none",
-                    found=", ".join(linkage.bodies[body].points),
-                ),
-            )
-        first, second = points[:2]
-        own = value_of(self.local(second, body), values) - value_of(self.local(first, body), values)
-        return float(np.angle((places[second] - places[first]) / own))
+    def _slid_on(self, slide: SlideEntry, placed: list[str]) -> Chain:
+        """Return the vectors from the origin to a point of the group that slides on a placed body, and note what places its line."""
+        if slide.through_name:
+            return [*self._reached(slide.through_name, placed), self._along(slide)]
+        if slide.on == GROUND:
+            return self._slid(slide)
+        origin = self.linkage.bodies[slide.on].at
+        return [*self._reached(origin, placed), *(self._start_of(slide, origin) or []), self._along(slide)]
 
-    def _reachable(self, body: str) -> str:
-        """Return a point of a body that lies on a body placed before it."""
-        points = self.linkage.bodies[body].points
-        for point in points:
-            if any(h in self.order for h in self.linkage.holders(point)):
-                return point
-        raise self.linkage.refused(
-            ("bodies", body),
-            Message("body {body} shares no point with a body that stands before it in the file", body=body),
-        )
+    def _near(
+        self, turns: Mapping[str, str], slides: Sequence[SlideEntry], near: NearEntry
+    ) -> dict[str, float]:
+        """Return rough angles, radians, and distances, mm, from the rough places of points."""
+        linkage = self.linkage
+        values = {n: middle(entry) for n, entry in linkage.given.items()} | {linkage.moved: near.driver}
+        places = {p: value_of(self.local(p, GROUND), values) for p in linkage.ground}
+        places |= {p: value_of(place, values) for p, place in self._driven.items()} | {**near.places}
+        results: dict[str, float] = {}
+        for turn in turns:
+            alike = [b for b in linkage.bodies if self.turns[b] == turn]
+            found = next((a for b in alike if (a := self._near_angle(b, places, values)) is not None), None)
+            if found is None:
+                points = [p for b in alike for p in linkage.bodies[b].points]
+                raise linkage.refused(
+                    ("assembly", "near"),
+                    Message(
+                        "near tells the places of two points of body {body}; found {value} of {found}",
+                        body=alike[0],
+                        value=", ".join(p for p in points if p in places) or "none",
+                        found=", ".join(points),
+                    ),
+                )
+            results[turn] = found
+        known = {linkage.moved: float(np.radians(near.driver)), **results}
+        for slide in slides:
+            if slide.at not in places:
+                raise linkage.refused(
+                    ("assembly", "near"),
+                    Message("near tells the place of {point}, which slides", point=slide.at),
+                )
+            turn = self.turns[slide.on]
+            frame = np.exp(1j * (known[turn] if turn in known else np.radians(float(turn))))
+            start = 0j if slide.on == GROUND else places.get(linkage.bodies[slide.on].at, 0j)
+            away = places[slide.at] - start
+            way = frame * np.exp(1j * np.radians(self._number(slide.along, values)))
+            through = value_of(local_plane(slide.through), values) * frame
+            results[slide.distance] = float(((away - through) * way.conjugate()).real)
+        return results
+
+    def _near_angle(
+        self, body: str, places: Mapping[str, complex], values: Mapping[str, float]
+    ) -> float | None:
+        """Return the angle of a body, radians, from the rough places of two of its points, or of its origin and a point that slides on
+        it; None without."""
+        linkage = self.linkage
+        known = [p for p in linkage.bodies[body].points if p in places]
+        if len(known) > 1:
+            first, second = known[:2]
+            own = value_of(self.local(second, body), values) - value_of(self.local(first, body), values)
+            return float(np.angle((places[second] - places[first]) / own))
+        slide = next((s for s in linkage.slides.values() if s.on == body and s.at in places), None)
+        if slide is None or not known:
+            return None
+        away = places[slide.at] - places[known[0]]
+        way = np.exp(1j * np.radians(self._number(slide.along, values)))
+        aside = (
+            value_of(local_plane(slide.through) - self.local(known[0], body), values) * way.conjugate()
+        ).imag
+        return float(np.angle(away / (complex(np.sqrt(max(abs(away) ** 2 - aside**2, 0.0)), aside) * way)))
+
+    def _number(self, expression: QuantityExpression, values: Mapping[str, float]) -> float:
+        """Return an angle of given quantities, degrees."""
+        return float(value_of(Plane(Sum.of(expression.code)), values).real)
+
+    def _finish(self, group: HigherGroup, words: Mapping[str, str]) -> None:
+        """Place the bodies of a group by a point of each that a placed body holds, or that slides on one."""
+        waiting = list(group.bodies)
+        while waiting:
+            for body in waiting:
+                points = self.linkage.bodies[body].points
+                point = next((p for p in points if {*self.linkage.holders(p)} & {*self.order}), None)
+                if point is None:
+                    slide = next(
+                        (s for s in self.linkage.slides.values() if self._slides_on_placed(s, body)), None
+                    )
+                    if slide is None:
+                        continue
+                    point = slide.at if slide.of == body else self.linkage.bodies[body].at
+                    self._write_slid(slide, body, point, words)
+                self._finish_rod(body, point)
+                waiting.remove(body)
+                break
+            else:
+                raise self.linkage.refused(
+                    ("bodies", waiting[0]),
+                    Message(
+                        "body {body} shares no point with a body that stands before it in the file",
+                        body=waiting[0],
+                    ),
+                )
+
+    def _slides_on_placed(self, slide: SlideEntry, body: str) -> bool:
+        return body in (slide.of, slide.on) and ({slide.of, slide.on} - {body}) <= {*self.order}
+
+    def _write_slid(self, slide: SlideEntry, body: str, point: str, words: Mapping[str, str]) -> None:
+        track, told = self.track(slide, body, point), {**words, "B": point}
+        place = f"{track.base.complex} + {'-' if track.sign < 0 else ''}polar({slide.distance}, {track.heading.code})"
+        self.hide(f"_{point}", place)
+        self.write_end(point, track.moved(track.base, slide.distance), told, f"_{point}")
+        for kind, ending in (("v", "_dot"), ("a", "_ddot")):
+            there = track.moved(self.carried(track.placed, self.at(point), kind), slide.distance + ending)
+            if kind == "a":
+                there = there + track.across(self.coriolis(track, f"{slide.distance}_dot"))
+            self.write_rates(point, there, kind, "slides", told)
+
+    @cached_property
+    def _driven(self) -> dict[str, Plane]:
+        """Coordinates of the points that the driver places, by what is given."""
+        linkage = self.linkage
+        driver, points = linkage.driver, linkage.bodies[linkage.driver].points
+        if linkage.drive.kind == "jack":
+            return {}
+        start = linkage.bodies[driver].at
+        base = self.local(start, GROUND) if linkage.drive.kind == "turn" else Plane()
+        if linkage.drive.kind == "slide":
+            start = self.reference[driver]
+            track = self.track(linkage.slides[start], driver, start)
+            base = track.moved(track.base, linkage.moved)
+        return {
+            p: base + rotated(self.local(p, driver) - self.local(start, driver), self.heading(driver))
+            for p in points
+        }
+
+    @property
+    def _step(self) -> float:
+        """From one position of the driver to the next: degrees of an angle, or a part of the longest length, mm."""
+        if self.linkage.drive.kind == "turn":
+            return 6.0
+        return 0.02 * max(abs(middle(e)) for e in self.linkage.given.values() if e.unit == "mm")
 
     def _loop_text(self, loops: Sequence[Chain]) -> str:
         """Return the closures in LaTeX."""

@@ -7,7 +7,16 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from coursework.errors import nearest
-from coursework.linkages.entries import GROUND, BodyEntry, GearEntry, GivenEntry, Place, SlideEntry
+from coursework.linkages.entries import (
+    GROUND,
+    BodyEntry,
+    DriverEntry,
+    GearEntry,
+    GivenEntry,
+    Place,
+    SlideEntry,
+)
+from coursework.linkages.expressions import QuantityExpression
 from coursework.linkages.table_reader import NAME, POINT, TableReader
 from coursework.messages import Message
 
@@ -87,8 +96,24 @@ class JointReader(TableReader):
             results[point] = self._place(("bodies", name), place, own)
         return results
 
-    def _driver(self, bodies: Mapping[str, BodyEntry], given: Mapping[str, GivenEntry]) -> tuple[str, str]:
-        driven = [b for b in bodies.values() if b.angle is not None and not b.angle.is_number]
+    def _driver(
+        self,
+        bodies: Mapping[str, BodyEntry],
+        slides: Mapping[str, SlideEntry],
+        jacks: Sequence[DriverEntry],
+        given: Mapping[str, GivenEntry],
+    ) -> DriverEntry:
+        """Return what drives: a body that a given angle turns, a slide of a given distance, or a jack of a given length."""
+        turned = {b.name: b.angle for b in bodies.values() if b.angle is not None and not b.angle.is_number}
+        driven = [DriverEntry("turn", name, angle.code) for name, angle in turned.items()]
+        places = [("bodies", name) for name in turned]
+        for point, slide in slides.items():
+            if slide.distance in given:
+                limits = self._limits(("slides", point), slide.distance, given)
+                driven.append(DriverEntry("slide", slide.of, slide.distance, limits=limits))
+                places.append(("slides", point))
+        driven += jacks
+        places += [("jacks", jack.body) for jack in jacks]
         if not driven:
             raise self.refused(
                 ("bodies",),
@@ -99,28 +124,108 @@ class JointReader(TableReader):
             )
         if len(driven) > 1:
             raise self.refused(
-                ("bodies", driven[1].name),
+                places[1],
                 Message(
-                    "two bodies are driven, {name} and {name_2}; one angle drives, those of the others follow",
-                    name=driven[0].name,
-                    name_2=driven[1].name,
+                    "two bodies are driven, {name} and {name_2}; one angle or length drives, those of the others follow",
+                    name=driven[0].body,
+                    name_2=driven[1].body,
                 ),
             )
-        angle = driven[0].angle
-        assert angle is not None
-        if not angle.is_name or not angle.code.startswith("theta"):
+        (found,) = driven
+        if found.kind == "turn" and not (turned[found.body].is_name and found.moved.startswith("theta")):
             raise self.refused(
-                ("bodies", driven[0].name),
+                ("bodies", found.body),
                 Message(
-                    "the driving angle is a given quantity such as theta2; found {code!r}", code=angle.code
+                    "the driving angle is a given quantity such as theta2; found {code!r}", code=found.moved
                 ),
             )
-        return driven[0].name, angle.code
+        return found
+
+    def _limits(
+        self, at: Sequence[str | int], length: str, given: Mapping[str, GivenEntry]
+    ) -> tuple[str, str]:
+        """Return the quantities between which a driven length goes: those that the file states, or the ends of its own range."""
+        table = self._table(*at)
+        stated = table.get("limits")
+        if stated is None:
+            low, high = (given[length].low, given[length].high)
+            if given[length].value is not None or not (low.is_number and high.is_number):
+                return "", ""
+            stated = [f"{low.code} mm", f"{high.code} mm"]
+        form = 'limits = ["300 mm", "500 mm"]'
+        if not isinstance(stated, list) or len(stated) != 2:
+            raise self.refused(
+                at,
+                Message(
+                    "a driven length goes between its limits: {form}; found {stated!r}",
+                    form=form,
+                    stated=stated,
+                ),
+            )
+        names = []
+        for value, ending in zip(stated, ("min", "max"), strict=True):
+            found = self._expression(at, value, "mm", f"{length}_{ending}", always=True)
+            names.append(found.code)
+            if not found.is_name:
+                raise self.refused(
+                    at,
+                    Message(
+                        "a driven length goes between its limits: {form}; found {stated!r}",
+                        form=form,
+                        stated=stated,
+                    ),
+                )
+        return names[0], names[1]
 
     # -------------------------------------------------------------------- joints
 
+    def _jacks(
+        self,
+        ground: Mapping[str, Place],
+        bodies: Mapping[str, BodyEntry],
+        given: Mapping[str, GivenEntry],
+    ) -> dict[str, tuple[BodyEntry, DriverEntry]]:
+        """Return the jacks: each as a body that holds both its pins, and as a driver."""
+        results = {}
+        for name, value in self._table("jacks").items():
+            at = ("jacks", name)
+            form = '2 = { from = "C", to = "B", rod = "3", length = "L" }'
+            keys = ("from", "to", "rod", "length")
+            if not isinstance(value, Mapping) or not all(isinstance(value.get(k), str) for k in keys):
+                raise self.refused(at, Message("a jack is {form}; found {value!r}", form=form, value=value))
+            self.only(value, (*keys, "limits"), at, name)
+            start, end, rod, length = (value[key] for key in keys)
+            if name in bodies or rod in bodies or rod == name or not (_BODY.match(name) and _BODY.match(rod)):
+                raise self.refused(
+                    at,
+                    Message(
+                        "cylinder and rod of a jack are two bodies with names of their own; found {name!r} and {rod!r}",
+                        name=name,
+                        rod=rod,
+                    ),
+                )
+            points = [*dict.fromkeys([*ground, *(p for b in bodies.values() for p in b.points)])]
+            for point in (start, end):
+                if point not in points:
+                    raise self.refused(
+                        at, Message("no point {point!r}{found}", point=point, found=nearest(point, points))
+                    )
+            if length not in given or given[length].unit != "mm":
+                raise self.refused(
+                    at,
+                    Message(
+                        "the length of a jack is a given quantity, which drives: [given], then {length} = {example}",
+                        length=length,
+                        example='{ from = "300 mm", to = "400 mm" }',
+                    ),
+                )
+            out = Place(QuantityExpression(length, (length,)))
+            entry = BodyEntry(name, {start: Place(), end: out}, start)
+            results[name] = entry, DriverEntry("jack", name, length, rod, self._limits(at, length, given))
+        return results
+
     def _slides(
-        self, ground: Mapping[str, Place], bodies: Mapping[str, BodyEntry]
+        self, ground: Mapping[str, Place], bodies: Mapping[str, BodyEntry], given: Mapping[str, GivenEntry]
     ) -> Mapping[str, SlideEntry]:
         results = {}
         for point, value in self._table("slides").items():
@@ -134,7 +239,7 @@ class JointReader(TableReader):
                         value=value,
                     ),
                 )
-            self.only(value, ("of", "on", "through", "along", "distance"), at, point)
+            self.only(value, ("of", "on", "through", "along", "distance", "limits"), at, point)
             names = [*bodies, GROUND]
             of, on = str(value.get("of", "")), str(value.get("on", GROUND))
             on = GROUND if on == "1" else on
@@ -156,7 +261,8 @@ class JointReader(TableReader):
                 raise self.refused(at, Message("body {of} does not slide on itself", of=of))
             through, name = self._through(at, value.get("through", ["0 mm", "0 mm"]), on, ground, bodies)
             distance = str(value.get("distance", f"s_{point}"))
-            if not NAME.match(distance) or distance in self.units:
+            drives = on == GROUND and distance in given and given[distance].unit == "mm"
+            if not NAME.match(distance) or (distance in self.units and not drives):
                 raise self.refused(
                     at,
                     Message(

@@ -13,7 +13,6 @@ from coursework.errors import CannotAssemble
 from coursework.kinematics.chains import ClosedChain, Vector
 from coursework.quantities.graph import Graph
 
-_STEP = 6.0  #: degrees of the driver from one position to the next, over which Newton's method converges
 _MOST_WAYS = 64  #: sets of lengths of which the positions on the way are remembered
 
 
@@ -38,11 +37,13 @@ class LargeGroup:
     unknowns
         Names of the angles of its bodies.
     near
-        Their rough values, radians, with the driver at ``near_angle``.
+        Their rough values, radians, with the driver at ``near_driver``.
     driver
-        Name of the driver's angle, degrees.
-    near_angle
-        Degrees.
+        Name of the driver's angle, degrees, or of its length, mm.
+    near_driver
+        Degrees, or mm.
+    step
+        Degrees or mm of the driver from one position to the next, over which Newton's method converges.
     functions
         A function that returns those functions of the module that compute the coordinates of the placed points.
     """
@@ -53,11 +54,13 @@ class LargeGroup:
         unknowns: Sequence[str],
         near: Mapping[str, float],
         driver: str,
-        near_angle: float,
+        near_driver: float,
+        step: float,
         functions: Callable[[], Sequence[Callable[..., Any]]],
     ) -> None:
         self.chain = ClosedChain(loops, unknowns)
-        self.near, self.driver, self.near_angle = near, driver, near_angle
+        self.near, self.driver, self.near_driver, self.step = near, driver, near_driver, step
+        self._is_angle = driver.startswith("theta")
         self._functions = functions
         self._ways: dict[tuple, dict[int, Mapping[str, Any]]] = {}
         self._turns = {v.turn for loop in loops for v in loop if isinstance(v.turn, str)}
@@ -84,7 +87,9 @@ class LargeGroup:
             Scalars only: the group does not close, here or on the way from the rough position.
         """
         target = given[self.driver]
-        way = (np.asarray(target, dtype=float) - self.near_angle + 180.0) % 360.0 - 180.0
+        way = np.asarray(target, dtype=float) - self.near_driver
+        if self._is_angle:
+            way = (way + 180.0) % 360.0 - 180.0
         if any(np.ndim(v) for n, v in given.items() if n != self.driver):
             start = self._followed(given, way)
         elif np.ndim(way):
@@ -97,21 +102,21 @@ class LargeGroup:
 
     def _followed(self, given: Mapping[str, Any], way: Any) -> Mapping[str, Any]:
         """Return poses a step before those of arrays, each followed on its own way."""
-        count = int(np.ceil(np.max(np.abs(way), initial=0.0, where=np.isfinite(way)) / _STEP))
+        count = int(np.ceil(np.max(np.abs(way), initial=0.0, where=np.isfinite(way)) / self.step))
         start: Mapping[str, Any] = self.near
         for number in range(count):
-            angle = self.near_angle + way * number / count
-            start = self.chain.solve(self._known({**given, self.driver: angle}), start).values
+            place = self.near_driver + way * number / count
+            start = self.chain.solve(self._known({**given, self.driver: place}), start).values
         return start
 
     def _passed_each(self, given: Mapping[str, Any], way: np.ndarray) -> Mapping[str, Any]:
         """Return the poses at the last whole step before each of several positions; NaN beyond a place that cannot be passed."""
-        steps = np.where(np.isfinite(way), np.trunc(way / _STEP), 0).astype(int)
+        steps = np.where(np.isfinite(way), np.trunc(way / self.step), 0).astype(int)
         poses: dict[int, Mapping[str, Any]] = {}
         for sign in (1, -1):
             for number in range(int(np.max(sign * steps, initial=0)) + 1):
                 try:
-                    poses[sign * number] = self._passed(given, sign * number * _STEP)
+                    poses[sign * number] = self._passed(given, sign * number * self.step)
                 except CannotAssemble:
                     break
         nowhere = dict.fromkeys(self.near, np.nan)
@@ -126,13 +131,13 @@ class LargeGroup:
         if len(self._ways) > _MOST_WAYS:
             self._ways.clear()
         poses = self._ways.setdefault(key, {0: self.near})
-        sign, count = (1 if way > 0 else -1), int(abs(way) / _STEP)
+        sign, count = (1 if way > 0 else -1), int(abs(way) / self.step)
         for number in range(1, count + 1):
             if sign * number not in poses:
-                angle = self.near_angle + sign * number * _STEP
+                place = self.near_driver + sign * number * self.step
                 before = poses[sign * (number - 1)]
                 poses[sign * number] = self.chain.solve(
-                    self._known({**given, self.driver: angle}), before
+                    self._known({**given, self.driver: place}), before
                 ).values
         return poses[sign * count]
 

@@ -40,7 +40,8 @@ def linkage_faults(linkage: LinkageFile) -> Iterator[BadInput]:
             ),
         )
     for name, joints in hold.items():
-        if len(joints) < 2 and name != linkage.driver and name not in geared:
+        drives = name == linkage.driver and linkage.drive.kind != "jack"
+        if len(joints) < 2 and not drives and name not in geared:
             yield linkage.refused(
                 ("bodies", name),
                 Message(
@@ -50,7 +51,7 @@ def linkage_faults(linkage: LinkageFile) -> Iterator[BadInput]:
                 ),
             )
     crank = linkage.bodies[linkage.driver]
-    if crank.at not in linkage.ground:
+    if linkage.drive.kind == "turn" and crank.at not in linkage.ground:
         yield linkage.refused(
             ("bodies", crank.name),
             Message(
@@ -60,9 +61,9 @@ def linkage_faults(linkage: LinkageFile) -> Iterator[BadInput]:
             ),
         )
     if linkage.mobility != 1:
-        pins = sum(len(b) - 1 for b in linkage.pins.values())
-        count = f"3 × {len(linkage.bodies)} bodies, less 2 × {pins + len(linkage.slides)} pins and slides"
-        count += f", less {len(linkage.gears)} gears" if linkage.gears else ""
+        bodies, pairs, gears = linkage.counts
+        count = f"3 × {bodies} bodies, less 2 × {pairs} pins and slides"
+        count += f", less {gears} gears" if gears else ""
         does = Message("nothing moves") if linkage.mobility < 1 else Message("one driver does not settle it")
         yield linkage.refused(
             ("bodies",),

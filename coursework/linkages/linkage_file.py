@@ -12,6 +12,7 @@ from coursework.errors import BadCourse, BadInput, CourseworkError, nearest
 from coursework.linkages.entries import (
     AssemblyEntry,
     BodyEntry,
+    DriverEntry,
     GivenEntry,
     LinkageFile,
     LoadEntry,
@@ -24,9 +25,21 @@ from coursework.linkages.table_reader import NAME
 from coursework.messages import Message, as_message
 from coursework.system.toml_files import source_of, table_of
 
-KEYS = ("title", "version", "given", "ground", "bodies", "slides", "gears", "assembly", "ask", "known")
+KEYS = (
+    "title",
+    "version",
+    "given",
+    "ground",
+    "bodies",
+    "slides",
+    "jacks",
+    "gears",
+    "assembly",
+    "ask",
+    "known",
+)
 ASKED = (
-    "mobility", "class", "positions", "equations", "velocities", "accelerations", "polygon", "instant_centres", "advantage", "torque", "points",
+    "mobility", "class", "positions", "equations", "velocities", "accelerations", "polygon", "instant_centres", "advantage", "torque", "thrust", "points",
 )  # fmt: skip
 _MOST_CHARACTERS = 60_000  #: of a file
 _MOST_POINTS = 1000  #: that a question is worth
@@ -90,14 +103,16 @@ class _LinkageReader(JointReader):
                 ("ground",), Message('the ground has points: [ground], then O = ["0 mm", "0 mm"]')
             )
         bodies = self._bodies(ground)
-        slides = self._slides(ground, bodies)
-        driver, angle = self._driver(bodies, given)
-        speed, acceleration = (f"{stem}{angle.removeprefix('theta')}" for stem in ("omega", "alpha"))
-        assembly, near = self._assembly()
+        jacks = self._jacks(ground, bodies, given)
+        bodies = {**bodies, **{name: entry for name, (entry, _) in jacks.items()}}
+        slides = self._slides(ground, bodies, given)
+        drive = self._driver(bodies, slides, [d for _, d in jacks.values()], given)
+        speed, acceleration = drive.rates
+        assembly, near = self._assembly(drive)
         gears, loads = self._gears(bodies), self._loads(bodies)
         linkage = LinkageFile(
-            self.path, self.source, title, self._whole("version", 1), self._ordered(given, angle), ground, bodies, slides,
-            gears, assembly, near, self._ask(), loads, self._required(), driver, angle,
+            self.path, self.source, title, self._whole("version", 1), self._ordered(given, drive), ground, bodies, slides,
+            gears, assembly, near, self._ask(), loads, self._required(), drive,
             speed if speed in given else "", acceleration if acceleration in given else "", self.path.stem,
             self._known(),
         )  # fmt: skip
@@ -105,9 +120,9 @@ class _LinkageReader(JointReader):
             raise fault
         return linkage
 
-    def _ordered(self, given: Mapping[str, GivenEntry], angle: str) -> Mapping[str, GivenEntry]:
+    def _ordered(self, given: Mapping[str, GivenEntry], drive: DriverEntry) -> Mapping[str, GivenEntry]:
         """Return all given quantities as the sheet lists them: what places the joints, the driver, what acts on it."""
-        driver = {angle.replace("theta", stem, 1) for stem in ("theta", "omega", "alpha")}
+        driver = {drive.moved, *drive.rates}
         first = {**given, **self.constants}
         ranks = {n: 2 if e.unit in ("N", "N*m") else int(n in driver) for n, e in first.items()}
         return dict(sorted(first.items(), key=lambda item: ranks[item[0]]))
@@ -124,12 +139,12 @@ class _LinkageReader(JointReader):
 
     # ------------------------------------------------------------------ assembly
 
-    def _assembly(self) -> tuple[Mapping[str, AssemblyEntry], NearEntry | None]:
+    def _assembly(self, drive: DriverEntry) -> tuple[Mapping[str, AssemblyEntry], NearEntry | None]:
         results = {}
         near = None
         for point, value in self._table("assembly").items():
             if point == "near":
-                near = self._near(value)
+                near = self._near(value, drive)
                 continue
             at = ("assembly", point)
             texts = value if isinstance(value, list) else [value]
@@ -160,10 +175,11 @@ class _LinkageReader(JointReader):
             ),
         )
 
-    def _near(self, value: Any) -> NearEntry:
+    def _near(self, value: Any, drive: DriverEntry) -> NearEntry:
         at = ("assembly", "near")
-        form = 'near = { angle = "60 deg", E = ["120 mm", "80 mm"], F = ["150 mm", "20 mm"] }'
-        if not isinstance(value, Mapping) or "angle" not in value:
+        key, unit = ("angle", "deg") if drive.kind == "turn" else ("length", "mm")
+        form = f'near = {{ {key} = "60 {unit}", E = ["120 mm", "80 mm"], F = ["150 mm", "20 mm"] }}'
+        if not isinstance(value, Mapping) or key not in value:
             raise self.refused(
                 at,
                 Message(
@@ -172,10 +188,10 @@ class _LinkageReader(JointReader):
                     value=value,
                 ),
             )
-        angle = self._checked(at, amount, value["angle"], "deg")
+        driver = self._checked(at, amount, value[key], unit)
         places = {}
         for point, place in value.items():
-            if point == "angle":
+            if point == key:
                 continue
             self._check_point(at, point)
             if not isinstance(place, list) or len(place) != 2:
@@ -190,7 +206,7 @@ class _LinkageReader(JointReader):
                 )
             x, y = (self._checked(at, amount, each, "mm") for each in place)
             places[point] = complex(x, y)
-        return NearEntry(places, angle)
+        return NearEntry(places, driver)
 
     # ----------------------------------------------------------------------- ask
 
@@ -219,15 +235,14 @@ class _LinkageReader(JointReader):
         return ask
 
     def _loads(self, bodies: Mapping[str, BodyEntry]) -> tuple[LoadEntry, ...]:
-        torque = (
-            self.table.get("ask", {}).get("torque") if isinstance(self.table.get("ask"), Mapping) else None
-        )
-        if torque is None:
+        ask = self._table("ask")
+        key = next((k for k in ("torque", "thrust") if k in ask), None)
+        if key is None:
             return ()
-        at = ("ask", "torque")
+        at, torque = ("ask", key), ask[key]
         loads = torque.get("load") if isinstance(torque, Mapping) else None
         loads = [loads] if isinstance(loads, Mapping) else loads
-        form = 'torque = { load = { on = "4", moment = "20 N*m" } }, or { on = "B", force = "100 N", angle = "180 deg" }'
+        form = f'{key} = {{ load = {{ on = "4", moment = "20 N*m" }} }}, or {{ on = "B", force = "100 N", angle = "180 deg" }}'
         if not isinstance(loads, list) or not loads or not all(isinstance(each, Mapping) for each in loads):
             raise self.refused(at, Message("{form}; found {torque!r}", form=form, torque=torque))
         results = []

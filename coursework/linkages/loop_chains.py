@@ -46,7 +46,10 @@ class LoopWriter(PointWriter):
                 self.write(
                     turn, offset.code, "deg", "bar_direction", rf"\delta_{{{start}{end}}}", words=words
                 )
-        return [(length, self.turns[body], str(arm.sign), turn)]
+        frame = self.turns[body]
+        if not frame.startswith("theta"):
+            frame = repr(math.radians(float(frame)))
+        return [(length, frame, str(arm.sign), turn)]
 
     def _named(self, value: Sum, name: str, point: str) -> str:
         """Return the name of a length; one that is an expression becomes a quantity."""
@@ -61,20 +64,43 @@ class LoopWriter(PointWriter):
         if point in self.linkage.ground:
             return self._reached(point, [])
         body, start = self.carrier(point)
+        if start == point:
+            slide = self.linkage.slides.get(point)
+            driven = slide is not None and slide.distance == self.linkage.moved
+            return self._slid(slide) if slide is not None and driven else self._reached(point, [])
         return [*self._way(start), *self._steps(body, start, point)]
 
     def _along(self, slide: SlideEntry) -> tuple[str, str, str, str]:
         """Return the vector along a slide."""
         frame, along = self.turns[slide.on], Heading.of(slide.along.code)
+        turn = slide.along.code if along.names else repr(math.radians(along.constant))
         if frame.startswith("theta"):
-            turn = slide.along.code if along.names else repr(math.radians(along.constant))
             return slide.distance, frame, "1", turn
-        return (
-            slide.distance,
-            slide.along.code if along.names else repr(math.radians(along.constant)),
-            "1",
-            "0.0",
-        )
+        if float(frame) == 0:
+            return slide.distance, turn, "1", "0.0"
+        return slide.distance, repr(math.radians(float(frame))), "1", turn
+
+    def _slid(self, slide: SlideEntry) -> Chain:
+        """Return the vectors from the origin to a point that slides on a placed body."""
+        if slide.through_name:
+            return [*self._way(slide.through_name), self._along(slide)]
+        origin = self.linkage.bodies[slide.on].at if slide.on != GROUND else ""
+        start = self._start_of(slide, origin) or []
+        return [*(self._way(origin) if origin else []), *start, self._along(slide)]
+
+    def _leg(self, body: str, start: str, end: str) -> Chain:
+        """Return the vectors on a body from one of its points to another, either of which may slide on it."""
+        slides = [self.linkage.slides.get(p) for p in (start, end)]
+        if not any(s is not None and s.on == body for s in slides):
+            return self._steps(body, start, end)
+        origin = self.linkage.bodies[body].at
+        ways: list[Chain] = []
+        for point, slide in zip((start, end), slides, strict=True):
+            if slide is None or slide.on != body:
+                ways.append(self._steps(body, origin, point))
+            else:
+                ways.append([*(self._start_of(slide, origin) or []), self._along(slide)])
+        return [*back(ways[0]), *ways[1]]
 
     def _start_of(self, slide: SlideEntry, origin: str) -> Chain | None:
         """Return the vectors from a point of the guide, or from the ground's origin, to the start of the distance along a slide."""
@@ -138,9 +164,8 @@ class LoopWriter(PointWriter):
     def _points_to(self, point: str) -> list[str]:
         if not point:
             return []
-        if point in self.linkage.ground:
-            return [point]
-        return [*self._points_to(self.carrier(point)[1]), point]
+        start = point if point in self.linkage.ground else self.carrier(point)[1]
+        return [*([] if start == point else self._points_to(start)), point]
 
 
 def back(vectors: Chain) -> Chain:
@@ -164,7 +189,7 @@ def closure_latex(loop: Chain, symbol: Callable[[str], str]) -> str:
                 f" + {symbol(turn)}" if turn.isidentifier() else f" + {constant:g}^\\circ" if constant else ""
             )
             own += f"\\,e^{{i({symbol(angle)}{more})}}" if more else f"\\,e^{{i{symbol(angle)}}}"
-        elif angle != "0.0":
-            own = f"i\\,{own}"
+        elif degrees := 90.0 if angle == "pi / 2" else math.degrees(float(angle) + float(turn)):
+            own = f"i\\,{own}" if degrees == 90 else f"{own}\\,e^{{i\\,{degrees:g}^\\circ}}"
         text += f" {'-' if int(sign) < 0 else '+'} {own}"
     return f"{text.removeprefix(' + ').strip()} = 0"

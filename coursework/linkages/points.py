@@ -15,7 +15,6 @@ from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
 
-from coursework.degrees import atan2, cos, sin, sqrt
 from coursework.linkages.entries import (
     GROUND,
     AssemblyEntry,
@@ -24,6 +23,7 @@ from coursework.linkages.entries import (
     Place,
     SlideEntry,
 )
+from coursework.linkages.expressions import DEGREES
 from coursework.linkages.groups import groups_of
 from coursework.linkages.terms import Heading, Plane, Sum
 from coursework.messages import Message
@@ -130,7 +130,7 @@ class Arm:
         return Plane.polar(self.length, self.heading).times(sign=self.sign)
 
 
-class Track(NamedTuple):
+class SlideLine(NamedTuple):
     """Line along which a point of a body moves: the placed body that carries it, the coordinates of the point where the distance is 0,
     the sign of the distance, and the direction of the slide."""
 
@@ -203,8 +203,8 @@ class PointWriter:
             top = root(name)
             if top == GROUND:
                 self.turns[name] = "0"
-            elif top == linkage.driver:
-                self.turns[name] = linkage.angle
+            elif top == linkage.driver and linkage.drive.kind == "turn":
+                self.turns[name] = linkage.moved
             else:
                 self.turns[name] = f"theta{top}" if top.isdigit() else f"theta_{top}"
             if body.angle is not None and body.angle.is_number:
@@ -230,7 +230,7 @@ class PointWriter:
     def alpha(self, body: str) -> str:
         """Return the angular acceleration of a body as code."""
         linkage = self.linkage
-        if self.turns[body] == linkage.angle:
+        if self.turns[body] == linkage.moved:
             return linkage.acceleration or "0"
         return self._rate(body, "alpha")
 
@@ -270,21 +270,24 @@ class PointWriter:
         """Return the vector between two points of a body."""
         first, second = self.linkage.place(start, body), self.linkage.place(end, body)
         frame = self.heading(body)
-        if first.is_origin and second.radius is not None:
-            return Arm(1, Sum.of(second.radius.code), frame + Heading.of(second.angle.code))
-        if second.is_origin and first.radius is not None:
-            return Arm(-1, Sum.of(first.radius.code), frame + Heading.of(first.angle.code))
+        for place, other, sign in ((second, first, 1), (first, second, -1)):
+            if other.is_origin and place.radius is not None:
+                return self._measured(sign, Sum.of(place.radius.code), frame + Heading.of(place.angle.code))
         gap = local_plane(second) - local_plane(first)
         if gap.y.vanishes:
-            if len(gap.x.products) == 1 and gap.x.products[0][0] < 0:
-                return Arm(-1, -gap.x, frame)
-            return Arm(1, gap.x, frame)
+            return self._measured(1, gap.x, frame)
         length, turn = f"d_{start}{end}", f"delta_{start}{end}"
         if length not in self.quantities:
             words = {"P": start, "Q": end, "body": body}
             symbols = f"{start}{end}", rf"\delta_{{{start}{end}}}"
             self.write_polar((length, turn), gap, ("bar_length", "bar_direction"), symbols, words)
         return Arm(1, Sum.of(length), frame + Heading.of(turn))
+
+    def _measured(self, sign: int, length: Sum, heading: Heading) -> Arm:
+        """Return a vector of a length that is positive in the middle of what is given: else backwards."""
+        if middle_value(Plane(length), self.linkage).real < 0:
+            return Arm(-sign, -length, heading)
+        return Arm(sign, length, heading)
 
     def write_polar(
         self, names: tuple[str, str], gap: Plane, steps: tuple[str, str], symbols: tuple[str, str], words: Mapping[str, str]
@@ -345,9 +348,12 @@ class PointWriter:
         if f"{kind}_{point}_x" not in self.quantities:
             body, start = self.carrier(point)
             before = self._motion(start, kind)
-            there = before + self._turning(body, self.arm(body, start, point).vector, kind)
+            arm = self.arm(body, start, point)
+            growth = self.growth(body, arm, kind)
+            there = before + self._turning(body, arm.vector, kind) + growth
             words = {"B": point, "P": start, "body": body}
-            self.write_rates(point, there, kind, "about" if before.vanishes else "on", words)
+            step = ("about" if before.vanishes else "on") if growth.vanishes else "jack"
+            self.write_rates(point, there, kind, step, words)
         return Plane(Sum.of(f"{kind}_{point}_x"), Sum.of(f"{kind}_{point}_y"))
 
     def write_rates(self, point: str, rates: Plane, kind: str, step: str, words: Mapping[str, str]) -> None:
@@ -367,6 +373,20 @@ class PointWriter:
             f"{self.omega(body)}**2" if self.omega(body) != "0" else "0"
         )
 
+    def growth(self, body: str, arm: Arm, kind: str, heading: Heading | None = None) -> Plane:
+        """Return the velocity, or the acceleration, that the driving jack adds over an arm as it grows, in axes turned by a direction;
+        nothing for any other body."""
+        linkage = self.linkage
+        if linkage.drive.kind != "jack" or body != linkage.driver or arm.length.vanishes:
+            return Plane()
+        speed, turn = linkage.drive.rates[0], arm.heading - (heading or Heading())
+        if kind == "v":
+            return Plane.polar(Sum.of(speed), turn).times(sign=arm.sign)
+        along = Plane.polar(Sum.of(linkage.acceleration or "0"), turn)
+        return (along + Plane.polar(Sum.of(speed), turn).turned.times("2", self.omega(body))).times(
+            sign=arm.sign
+        )
+
     def carried(self, body: str, point: Plane, kind: str) -> Plane:
         """Return the velocity, or the acceleration, of the point of a placed body that lies at coordinates now."""
         if body == GROUND:
@@ -375,15 +395,34 @@ class PointWriter:
         return self._motion(start, kind) + self._turning(body, point - self.at(start), kind)
 
     def _place_driver(self) -> None:
-        driver = self.linkage.driver
-        self.reference[driver] = self.linkage.bodies[driver].at
-        self.order.append(driver)
+        linkage, driver = self.linkage, self.linkage.driver
+        if linkage.drive.kind == "turn":
+            self._finish_rod(driver, linkage.bodies[driver].at)
+        elif linkage.drive.kind == "slide":
+            slide = linkage.slides[linkage.slides_driven]
+            track, point = self.track(slide, driver, slide.at), slide.at
+            words = {"B": point}
+            place = f"{track.base.complex} + polar({linkage.moved}, {track.heading.code})"
+            self.hide(f"_{point}", place)
+            self.write_end(point, track.moved(track.base, linkage.moved), words, f"_{point}")
+            speed = linkage.drive.rates[0]
+            self.write_rates(point, track.moved(Plane(), speed), "v", "slides", words)
+            gain = track.moved(Plane(), linkage.acceleration or "0")
+            self.write_rates(point, gain, "a", "slides", words)
+            self._finish_rod(driver, point)
+
+    def write_end(self, point: str, there: Plane, words: Mapping[str, str], hidden: str) -> None:
+        """Write both coordinates of a point that a hidden quantity holds as a complex number."""
+        for axis, component, half in (("x", there.x, "real"), ("y", there.y, "imag")):
+            self.write(
+                f"{axis}{point}", component.code, "mm", f"end_{axis}", words=words, stable=f"{hidden}.{half}"
+            )
 
     def _finish_rod(self, body: str, start: str) -> None:
         self.reference[body] = start
         self.order.append(body)
 
-    def track(self, slide: SlideEntry, body: str, point: str) -> Track:
+    def track(self, slide: SlideEntry, body: str, point: str) -> SlideLine:
         """Return how a point of a body moves that slides on a placed one."""
         slides = body == slide.of
         placed = slide.on if slides else slide.of
@@ -394,7 +433,15 @@ class PointWriter:
             start = self.at(slide.through_name) if slide.through_name else self.world(slide.through, placed)
             origin = self.local(slide.at, body)
         base = start + rotated(self.local(point, body) - origin, frame)
-        return Track(placed, base, 1 if slides else -1, frame + Heading.of(slide.along.code))
+        return SlideLine(placed, base, 1 if slides else -1, frame + Heading.of(slide.along.code))
+
+    def coriolis(self, track: SlideLine, speed: str) -> Sum:
+        """Return the Coriolis acceleration of what slides, to the left of its line."""
+        return Sum.of(speed).times("2", self.omega(track.placed), sign=track.sign)
+
+    def slide_symbol(self, slide: SlideEntry) -> str:
+        """Return the symbol of the distance along a slide; none where its name says it."""
+        return f"s_{{{slide.at}}}" if slide.distance == f"s_{slide.at}" else ""
 
     def world(self, place: Place, body: str) -> Plane:
         """Return the coordinates of a place without a name in a placed body's frame."""
@@ -403,7 +450,7 @@ class PointWriter:
         origin = self.linkage.bodies[body].at
         return self.at(origin) + rotated(local_plane(place), self.heading(body))
 
-    def _track_place(self, slide: SlideEntry, body: str, place: Place) -> Track:
+    def _track_place(self, slide: SlideEntry, body: str, place: Place) -> SlideLine:
         """Return how a place of a body moves that slides on a placed one."""
         point = slide.at if body == slide.of else next(iter(self.linkage.bodies[body].points))
         track = self.track(slide, body, point)
@@ -493,5 +540,13 @@ def middle_value(vector: Plane, linkage: LinkageFile) -> complex:
 
 def value_of(vector: Plane, values: Mapping[str, float]) -> complex:
     """Return a vector of given quantities as a number."""
-    space = {**values, "sin": sin, "cos": cos, "sqrt": sqrt, "atan2": atan2, "np": np}
+    space = {**values, **DEGREES, "np": np}
     return complex(eval(vector.x.code, space), eval(vector.y.code, space))  # written by ExpressionReader
+
+
+def dotted(symbol: str, order: int) -> str:
+    """Return a symbol with as many dots."""
+    if not symbol or not order:
+        return symbol
+    stem, _, index = symbol.partition("_")
+    return rf"\{'d' * order}ot{{{stem}}}" + (f"_{index}" if index else "")

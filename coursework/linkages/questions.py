@@ -61,6 +61,7 @@ class QuestionWriter:
             "instant_centres": self._centres,
             "advantage": self._advantage,
             "torque": self._torque,
+            "thrust": self._thrust,
         }
         for key, value in self.linkage.ask.items():
             if key != "points" and value is not False:
@@ -89,8 +90,7 @@ class QuestionWriter:
 
     def _mobility(self, _: Any) -> None:
         linkage = self.linkage
-        bodies, higher = len(linkage.bodies), len(linkage.gears)
-        pairs = sum(len(b) - 1 for b in linkage.pins.values()) + len(linkage.slides)
+        bodies, pairs, higher = linkage.counts
         rest = f" - {higher}" if higher else ""
         words = {"n": str(bodies), "b": str(pairs), "h": str(higher)}
         self.formulas.write(
@@ -111,7 +111,7 @@ class QuestionWriter:
                 {},
             )
         )
-        multiple = pairs - len(linkage.pins) - len(linkage.slides)
+        multiple = sum(len(b) - 2 for b in linkage.pins.values())
         if multiple:
             code = f"3 * {bodies} - 2 * {pairs - multiple}{rest}"
             point = next(p for p, b in linkage.pins.items() if len(b) > 2)
@@ -228,13 +228,14 @@ class QuestionWriter:
     def _needs_speed(self, key: str) -> None:
         linkage = self.linkage
         if not linkage.speed:
-            speed = linkage.angle.replace("theta", "omega", 1)
+            speed = linkage.drive.rates[0]
+            example = f'{speed} = "12 rad/s"' if linkage.drive.kind == "turn" else f'{speed} = "12 mm/s"'
             raise linkage.refused(
                 ("ask", key),
                 Message(
-                    '{key} need the speed of the driver: [given], then {speed} = "12 rad/s"',
+                    "{key} need the speed of the driver: [given], then {example}",
                     key=key,
-                    speed=speed,
+                    example=example,
                 ),
             )
 
@@ -242,7 +243,7 @@ class QuestionWriter:
     def _turns(self) -> tuple[str, ...]:
         """Angles that follow from the driver's, each once."""
         turns = dict.fromkeys(t for b, t in self.formulas.turns.items() if b != GROUND)
-        return tuple(t for t in turns if t.startswith("theta") and t != self.linkage.angle)
+        return tuple(t for t in turns if t.startswith("theta") and t != self.linkage.moved)
 
     @property
     def _moving_points(self) -> tuple[str, ...]:
@@ -250,7 +251,7 @@ class QuestionWriter:
 
     @property
     def _slides(self) -> tuple[str, ...]:
-        return tuple(s.distance for s in self.linkage.slides.values())
+        return tuple(s.distance for s in self.linkage.followed_slides)
 
     def _turn_words(self, turn: str) -> dict[str, str]:
         turned = [b for b, t in self.formulas.turns.items() if t == turn]
@@ -308,7 +309,7 @@ class QuestionWriter:
         )
         turns = [n for n in names if n.startswith("theta")]
         lengths = [n for n in names if n not in turns]
-        moving = [n for n in lengths if n in self._slides]
+        moving = [n for n in lengths if n in (*self._slides, self.linkage.moved)]
         rates = [*(t.replace("theta", "omega", 1) for t in turns), *(f"{s}_dot" for s in moving)]
         for number, (group, loop) in enumerate(closures.items(), start=1):
             name = f"loop_{number}"
@@ -411,6 +412,7 @@ class QuestionWriter:
     def _advantage(self, value: Any) -> None:
         self._needs_speed("advantage")
         formulas, linkage = self.formulas, self.linkage
+        self._drives("advantage", "turn")
         turning = [b for b in linkage.bodies if formulas.turns[b].startswith("theta") and b != linkage.driver]
         on_ground = [b for b in turning if any(p in linkage.ground for p in linkage.bodies[b].points)]
         body = (on_ground or turning)[-1] if value is True and turning else str(value)
@@ -439,8 +441,33 @@ class QuestionWriter:
             )
         )
 
+    def _drives(self, key: str, *kinds: str) -> None:
+        """Refuse a question about another sort of driver."""
+        if self.linkage.drive.kind not in kinds:
+            of_angle = Message(
+                "{key} is asked where a given angle turns a body; of a driven length ask thrust", key=key
+            )
+            of_length = Message(
+                "{key} is asked of a driven length; where a given angle turns a body ask torque", key=key
+            )
+            raise self.linkage.refused(("ask", key), of_angle if kinds == ("turn",) else of_length)
+
     def _torque(self, _: Any) -> None:
-        self._needs_speed("torque")
+        self._drives("torque", "turn")
+        code = f"-({' + '.join(self._powers('torque'))}) / {self.linkage.speed}"
+        words = {"driver": self.linkage.driver}
+        self.formulas.write("torque", code, "N*m", "torque", r"\Gamma", words=words)
+        self._ask("torque", "torque", words, unit='"N*m"', points="2")
+
+    def _thrust(self, _: Any) -> None:
+        self._drives("thrust", "slide", "jack")
+        code = f"-({' + '.join(self._powers('thrust'))}) / ({self.linkage.speed} / 1000)"
+        self.formulas.write("thrust", code, "N", "thrust", "P")
+        self._ask("thrust", f"thrust_{self.linkage.drive.kind}", unit='"N"', points="2")
+
+    def _powers(self, key: str) -> list[str]:
+        """Return the powers of the loads, W, as code."""
+        self._needs_speed(key)
         formulas, linkage = self.formulas, self.linkage
         terms = []
         for load in linkage.loads:
@@ -452,10 +479,7 @@ class QuestionWriter:
                 v = formulas.velocity(load.on)
                 along = v.along(Heading.of(load.angle.code)).times(load.force.code)
                 terms.append(f"({along.code}) / 1000")
-        code = f"-({' + '.join(terms)}) / {linkage.speed}"
-        words = {"driver": linkage.driver}
-        formulas.write("torque", code, "N*m", "torque", r"\Gamma", words=words)
-        self._ask("torque", "torque", words, unit='"N*m"', points="2")
+        return terms
 
     # ------------------------------------------------------------------ polygons
 

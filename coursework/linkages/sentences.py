@@ -88,12 +88,15 @@ class SentenceWriter:
         if name == GROUND:
             return self.tables["body"]["frame"]
         points = [*self.linkage.bodies[name].points]
+        drives = name == self.linkage.driver
+        if drives and self.linkage.drive.kind == "jack":
+            return self.tables["body"]["jack"].replace("<points>", "".join(map(point_latex, points)))
         if any(name in (g.first, g.second) for g in self.linkage.gears) and len(points) == 1:
             kind = "wheel"
         elif len(points) == 1:
             kind = "guide" if self.is_guide(name) else "block"
         elif len(points) == 2:
-            kind = "crank" if name == self.linkage.driver else "bar"
+            kind = "crank" if drives and self.linkage.drive.kind == "turn" else "bar"
         else:
             kind = "plate"
         return self.tables["body"][kind].replace("<points>", "".join(map(point_latex, points)))
@@ -173,8 +176,9 @@ def exercise_text(formulas: FormulaWriter, questions: QuestionWriter, lang: str)
     for name, points in questions.loops.items():
         pieces.append(f"## {name}\n{writer.sentence('statement', 'loop', {'points': points})}")
     joints = [p for p in linkage.points if p in linkage.pins]
+    key = "figure" if linkage.drive.kind == "turn" else "figure_length"
     pieces.append(
-        f"## figure\n{writer.sentence('statement', 'figure', {'points': ', '.join(joints), 'name': linkage.angle})}"
+        f"## figure\n{writer.sentence('statement', key, {'points': ', '.join(joints), 'name': linkage.moved})}"
     )
     return "\n\n".join(pieces) + "\n"
 
@@ -216,7 +220,11 @@ def _statement(writer: SentenceWriter, questions: Sequence[LinkageQuestion]) -> 
             "omega": formulas.symbol(linkage.speed),
             "alpha": formulas.symbol(linkage.acceleration) if linkage.acceleration else "",
         }
-        motion.append(sentence("statement", "varying" if linkage.acceleration else "constant", words))
+        key = "varying" if linkage.acceleration else "constant"
+        if linkage.drive.kind != "turn":
+            key = f"{linkage.drive.kind}_{key}"
+            words |= {"s": linkage.moved, "B": linkage.slides_driven}
+        motion.append(sentence("statement", key, words))
     for load in linkage.loads:
         if load.moment is not None:
             motion.append(
@@ -257,13 +265,22 @@ def _body(writer: SentenceWriter, name: str) -> str:
         kind = "guide" if writer.is_guide(name) else "block"
         return writer.sentence("statement", kind, {"B": start, "name": name})
     words = {"P": start, "name": name, "angle": formulas.symbol(formulas.turns[name])}
+    drive = linkage.drive
+    if name == linkage.driver and drive.kind == "jack":
+        limits = [formulas.symbol(n) for n in drive.limits if n]
+        travel = (
+            writer.sentence("statement", "travel", dict(zip("mM", limits, strict=True))) if limits else ""
+        )
+        words |= {"B": others[0], "rod": drive.rod, "s": linkage.moved, "travel": travel}
+        return writer.sentence("statement", "jack", words)
+    turned = name == linkage.driver and drive.kind == "turn"
     far = points[others[0]]
     if len(others) == 1 and far.radius is None and far.y.is_zero:
         words |= {"B": others[0], "length": writer.latex(far.x)}
-        return writer.sentence("statement", "crank" if name == linkage.driver else "bar", words)
+        return writer.sentence("statement", "crank" if turned else "bar", words)
     places = [_frame_point(writer, p, points[p]) for p in others]
     words |= {"points": "".join(map(point_latex, [start, *others])), "places": writer.listed(places)}
-    return writer.sentence("statement", "plate_driven" if name == linkage.driver else "plate", words)
+    return writer.sentence("statement", "plate_driven" if turned else "plate", words)
 
 
 def _slide(writer: SentenceWriter, slide: SlideEntry) -> str:
@@ -333,7 +350,9 @@ def solution_text(formulas: FormulaWriter, questions: QuestionWriter, lang: str)
     title = _title(formulas.linkage.title, lang, formulas.linkage.name)
     pieces = [
         f"# {writer.sentence('solution', 'title', {'title': title})}",
-        writer.sentence("solution", "opening", {"groups": writer.listed(groups)}) if groups else "",
+        writer.sentence("solution", "opening", {"groups": writer.listed(groups), "first": _first(writer)})
+        if groups
+        else "",
     ]
     for quantity in formulas.quantities.values():
         if quantity.step:
@@ -349,9 +368,14 @@ def solution_text(formulas: FormulaWriter, questions: QuestionWriter, lang: str)
     return "\n\n".join(p for p in pieces if p) + "\n"
 
 
+def _first(writer: SentenceWriter) -> str:
+    """Return what stands before the groups: the driver, or for a jack that groups hold nothing but its length."""
+    return writer.sentence("solution", f"first_{writer.linkage.drive.kind}")
+
+
 def _step(writer: SentenceWriter, step: str, words: Mapping[str, str]) -> str:
     """Return the sentence of a step: its own, else the one without what a moving guide adds; a second component is likewise."""
-    for key in (step, step.removesuffix("_moved")):
+    for key in (step, step.removesuffix("_moved"), step.removesuffix("_jack")):
         if writer.has("step", key):
             return writer.sentence("step", key, words)
     if step.endswith("_y") and writer.has("step", f"{step[:-2]}_x"):

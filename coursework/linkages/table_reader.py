@@ -102,15 +102,15 @@ class TableReader(TomlReader):
             raise self.refused(at, fault.args[0] if fault.args else str(fault)) from fault
 
     def _expression(
-        self, at: Sequence[str | int], text: object, unit: str, name: str = ""
+        self, at: Sequence[str | int], text: object, unit: str, name: str = "", always: bool = False
     ) -> QuantityExpression:
-        """Read an expression; a number other than 0 becomes a given quantity of that name, which the sheet lists among its data."""
+        """Read an expression; a number other than 0, or any if ``always``, becomes a given quantity of that name, which the sheet lists
+        among its data."""
         found: QuantityExpression = self._checked(at, ExpressionReader(self.units).read, text, unit)
         if (
             not name
             or not found.is_number
-            or found.is_zero
-            or (unit == "deg" and float(found.code) % 90 == 0)
+            or (not always and (found.is_zero or (unit == "deg" and float(found.code) % 90 == 0)))
         ):
             return found
         while name in self.units:

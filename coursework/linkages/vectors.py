@@ -64,6 +64,10 @@ class PolygonWriter:
 
     def _pieces(self) -> Iterator[list[DrawnSide]]:
         drawn: set[str] = set()
+        if self.linkage.drive.kind != "turn":
+            raise self.linkage.refused(
+                ("ask", "polygon"), Message("polygons are drawn of mechanisms that a given angle drives")
+            )
         yield from self._carried(self.linkage.driver, drawn)
         for group in self.formulas.groups:
             if not isinstance(group, Dyad) or group.kind not in ("RRR", "RRP"):

@@ -91,11 +91,29 @@ FAULTS = [
 ]
 
 
-@each_row("text, other, line, piece", FAULTS)
-def test_a_fault_is_told_in_one_line_with_its_place(text, other, line, piece, tmp_path_factory):
-    assert TOGGLE.count(text) == 1
+#: Of mechanisms that a length drives: the file, then the same.
+LENGTHS = [
+    ("tipper", 'length = "L" }', 'length = "a9" }', 16, "length of a jack is a given quantity"),
+    ("tipper", 'rod = "3"', 'rod = "4"', 16, "two bodies with names of their own"),
+    ("tipper", 'from = "C"', 'from = "D"', 16, "no point 'D'"),
+    ("tipper", 'length = "L" }', 'length = "L", limits = ["440 mm"] }', 16, 'limits = ["300 mm", "500 mm"]'),
+    ("tipper", 'length = "L" }', 'legnth = "L" }', 16, "a jack is 2 ="),
+    ("tipper", "[assembly]", '5 = { from = "O", to = "G", rod = "6", length = "a" }\n[assembly]', 17, "two bodies are driven, 2 and 5"),
+    ("tipper", "thrust = {", "torque = {", 27, "of a driven length ask thrust") ,
+    ("tipper", "L_dot = {", "L_speed = {", 23, 'L_dot = "12 mm/s"'),
+    ("tipper", "instant_centres =", 'polygon = ["velocity"]\ninstant_centres =', 26, "a given angle drives"),
+    ("piston_engine", "mobility = true", "advantage = true", 21, "asked where a given angle turns a body"),
+    ("piston_engine", 'on = "ground", through = ["0 mm", "e"]', 'on = "2", through = ["0 mm", "e"]', 17, "distance along the slide, which follows"),
+    ("digger_arm", 'near = { length = "346 mm"', 'near = { angle = "20 deg"', 16, "length ="),
+]  # fmt: skip
+
+
+@each_row("name, text, other, line, piece", [("toggle", *row) for row in FAULTS] + LENGTHS)
+def test_a_fault_is_told_in_one_line_with_its_place(name, text, other, line, piece, tmp_path_factory):
+    stated = (FOLDER / "exercises" / f"{name}.toml").read_text("utf-8")
+    assert stated.count(text) == 1
     path = tmp_path_factory.mktemp("faults") / "toggle.toml"
-    path.write_text(TOGGLE.replace(text, other), "utf-8")
+    path.write_text(stated.replace(text, other), "utf-8")
     with pytest.raises(BadCourse) as caught:
         compiled(path, "exercises/toggle.toml")
     told = str(caught.value)

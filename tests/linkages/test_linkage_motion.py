@@ -6,6 +6,7 @@ from linkage_samples import NAMES, course
 from tables import each_row
 
 from coursework import open_course
+from coursework.scenes.scenes import Scene
 
 
 def _turns(exercise, given):
@@ -40,10 +41,12 @@ def test_rates_and_accelerations_are_the_differences_of_positions(name):
     """Of seven points of a polynomial through positions a third of a degree apart, with the driver at a constant rate."""
     exercise = course()[name]
     given = dict(exercise.variant(3).given)
-    speed = given["omega2"]
-    given |= {n: 0.0 for n in ("alpha2",) if n in given}
+    driver = exercise.spec.driver
+    drive = driver.jack or driver
+    speed = given[drive.speed]
+    given |= {n: 0.0 for n in (drive.acceleration,) if n in given}
     step = 1 / 3
-    moved = {**given, "theta2": given["theta2"] + step * np.arange(-3, 4)}
+    moved = {**given, driver.moved: given[driver.moved] + step * np.arange(-3, 4)}
     positions = _turns(exercise, given)
     names = exercise.solution.graph.names
     found = exercise.solve(only=positions, **moved)
@@ -51,7 +54,7 @@ def test_rates_and_accelerations_are_the_differences_of_positions(name):
     rates = exercise.solve(only=[n for n in wanted if n in names], **given)
     first = np.array([-1, 9, -45, 0, 45, -9, 1]) / 60
     second = np.array([2, -27, 270, -490, 270, -27, 2]) / 180
-    unit = np.degrees(speed) / step  # one step, in steps a second
+    unit = (speed if driver.jack else np.degrees(speed)) / step  # one step, in steps a second
     checked = 0
     for item in positions:
         along = np.asarray(found[item], dtype=float) * np.ones(7)
@@ -85,6 +88,40 @@ def test_torques_do_the_work_of_the_load(name):
         point = {"slider_crank": "xB", "atkinson_engine": "xE"}[name]
         work = given["F"] * np.diff(exercise.solve(only=point, **ends)[point])[0] / 1000
     assert torque * turn == pytest.approx(-work, rel=1e-5)
+
+
+@each_row("name", ["tipper", "piston_engine", "digger_arm"])
+def test_driven_lengths_push_what_the_scene_says_and_does_the_work_of_the_load(name):
+    """The thrust by the powers is that by the forces of the joints, which know nothing of it; a small way of the driver does work."""
+    exercise = course()[name]
+    given, driver = dict(exercise.variant(1).given), exercise.spec.driver
+    thrust = exercise.solve(only="thrust", **given)["thrust"]
+    length, step = given[driver.moved], 0.01
+    table = Scene(
+        exercise,
+        {**given, driver.jack.limits[0]: length - step, driver.jack.limits[1]: length + step},
+        ("load",),
+    ).over_cycle(2)
+    assert table.columns["drive_thrust"][1] == pytest.approx(thrust, rel=1e-9)
+    ends = {**given, driver.moved: length + np.array([-step, step])}
+    if name == "tipper":
+        work = given["F"] * -np.diff(exercise.solve(only="yG", **ends)["yG"])[0]
+    else:
+        body, moment = ("theta2", "M") if name == "piston_engine" else ("theta6", "M")
+        work = 1000 * given[moment] * np.radians(np.diff(exercise.solve(only=body, **ends)[body]))[0]
+    assert thrust * 2 * step == pytest.approx(-work, rel=1e-6)
+
+
+def test_the_tipper_stated_as_a_file_agrees_with_the_one_written_by_hand():
+    theirs, mine = open_course()["jack_mechanism"], course()["tipper"]
+    shared = ("a", "xC", "yC", "L", "L_dot", "L_ddot")
+    for variant in theirs.variants(range(60)):
+        given = {n: variant.given[n.replace("C", "B")] for n in shared}
+        rest = {n: mine.variant(0).given[n] for n in ("x_G_4", "y_G_4", "F", "L_min", "L_max")}
+        names = ["theta4", "theta2", "omega4", "omega2", "alpha4", "alpha2"]
+        found, right = mine.solve(only=names, **given, **rest), theirs.solve(only=names, **variant.given)
+        for name in names:
+            assert found[name] == pytest.approx(right[name], rel=1e-11, abs=1e-12), name
 
 
 def _both(name, other, arguments, answers, renamed=None, count=300):
