@@ -40,6 +40,7 @@ def is_assignment(exercises: Sequence[str]) -> bool:
 #: Keys of an assignment's file that are additions to its formats, with the kind of their values.
 _ADDED: Mapping[str, tuple[click.ParamType, Mapping[Any, str]]] = {
     "booklet": (click.BOOL, {True: "booklet"}),
+    "attendance": (click.BOOL, {True: "attendance"}),
     "scan": (click.BOOL, {True: "scan"}),
     "practice": (click.BOOL, {True: "practice"}),
     "solutions": (click.BOOL, {False: "no-solutions"}),
@@ -311,13 +312,14 @@ def write_build(
     """Write the files of a build; return their number, and whether the record is what it was ``before``. ``store`` is handed what
     ``issued.json`` says, before anything is written."""
     from coursework.issuing.build import files
-    from coursework.issuing.issued import issued_content
+    from coursework.issuing.issued import LIFTED, issued_content
     from coursework.issuing.letters import unprinted_names
     from coursework.rendering.renderer import renderer_of
     from coursework.system.tables import json_text
     from coursework.system.writing import write_tree
 
-    content = issued_content(issued.issues, assignment, issued.secret)
+    lifted = str((before or {}).get(LIFTED, ""))
+    content = issued_content(issued.issues, assignment, issued.secret, lifted)
     text, record = json_text(content), out / "issued.json"
     if before is not None and assignment is None and not _goes_on(before, json.loads(text)):
         raise BadInput(
@@ -327,7 +329,9 @@ def write_build(
             ),
             before=record,
         )
-    wanted = list(files(course, issued.issues, formats, assignment, only=only, secret=issued.secret))
+    wanted = list(
+        files(course, issued.issues, formats, assignment, only=only, secret=issued.secret, lifted=lifted)
+    )
     if "nbgrader" in formats and only is None:
         from coursework.platforms.nbgrader import tree as nbgrader
 
@@ -406,7 +410,9 @@ def _check_identity(assignment: Assignment, students: Sequence[Any], notes: list
     for title in assignment.carry or ():
         if not any(is_same_column(column, title) for column in columns):
             wanted.append((title, Message("the summary has no such column")))
-    if assignment.sort:
+    if assignment.sort and not any(
+        is_same_column(column, "room") for column in columns if is_same_column(assignment.sort, "room")
+    ):
         wanted.append((assignment.sort, Message("the papers of a booklet are in the order of the roster")))
     for title, then in wanted:
         if folded(title) not in folded_columns:

@@ -101,6 +101,14 @@ if TYPE_CHECKING:
         "all but birth, health and extra time."
     ),
 )
+@click.option(
+    "--names",
+    is_flag=True,
+    help=(
+        "Lift the anonymity of the assignment for good: names take the place of codes in what is written from now on. "
+        "Refused as long as an answer waits."
+    ),
+)
 @decimal_option
 @click.option(
     "--from",
@@ -127,6 +135,7 @@ def grade(
     today: datetime.datetime | None,
     accepted: Path | None,
     carry: str | None,
+    names: bool,
     decimal: str,
     marks: Path | None,
     cluster: str | None,
@@ -158,6 +167,8 @@ def grade(
         raise BadInput(
             "{option} is of a database: --db URL", option="--assignment" if assignment else "--replace"
         )
+    if db is not None and names:
+        raise BadInput("--names is of files: a database has names")
     if db is not None and carry is not None:
         raise BadInput("--carry is of files: in a database the assignment states what is carried")
     _check_source(submissions, marks, accepted, in_database=db is not None)
@@ -195,18 +206,29 @@ def grade(
         )
     out = out or issued.parent / "marks"
     writes(context, out)
-    book = grade_with_bar(
-        opened(context),
-        submissions,
-        issued,
-        out,
-        feedback=feedback,
-        accepted=accepted,
-        decimal=decimal,
-        form=form,
-        carry=carried,
-    )
-    return _print_gradebook(book, out)
+
+    def graded(*, feedback: bool | None) -> Gradebook:
+        return grade_with_bar(
+            opened(context),
+            submissions,
+            issued,
+            out,
+            feedback=feedback,
+            accepted=accepted,
+            decimal=decimal,
+            form=form,
+            carry=carried,
+        )
+
+    if names:
+        from coursework.gradebook.anonymity import lift
+
+        lift(issued, lambda: graded(feedback=False).review_count, form.today)
+    book = graded(feedback=feedback)
+    status = _print_gradebook(book, out)
+    if book.issued.is_anonymous:
+        say("students go by their codes; once nothing waits, --names puts their names in place of them")
+    return status
 
 
 def _print_gradebook(book: Gradebook, out: Path) -> int:

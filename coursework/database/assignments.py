@@ -73,7 +73,7 @@ def put_issued(connection: Connection, content: Mapping[str, Any], name: str = "
         It is no content of ``issued.json``, has no name, or gives somebody another variant than they were issued.
     """
     name = name or name_of(content)
-    issued = Issued(content, "what was issued")
+    issued = Issued(content, "what was issued", by_name=True)
     if not name:
         raise BadInput("the papers have no name, as they belong to no assignment: name them")
     values: dict[str, Any] = {

@@ -5,7 +5,7 @@ from __future__ import annotations
 import csv
 import math
 from collections import Counter
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -43,18 +43,20 @@ def _count(digits: str) -> int:
 class EarlierMarks:
     """Marks of the previous marking."""
 
-    def __init__(self, path: Path) -> None:
+    def __init__(self, path: Path, renamed: Callable[[str], str] = str) -> None:
         self._marks: dict[str, tuple[str, str]] = {}
         self._names: dict[str, str] = {}  #: as they are written
         self._points: dict[tuple[str, str], float] = {}  #: by student and sitting
         self._verdicts: dict[tuple[str, str], Counter[str]] = {}
+        self._renamed = renamed
         self.exists = path.exists()
         if self.exists:
             alike: dict[tuple[str, str], tuple[str, str]] = {}
             for row in rows_of(path):
                 mark = (row.get("verdict", ""), row.get("points", "").replace(",", "."))
-                name = folded(row.get("student", ""))
-                self._names.setdefault(name, row.get("student", ""))
+                row["student"] = renamed(row.get("student", ""))
+                name = folded(row["student"])
+                self._names.setdefault(name, row["student"])
                 sitting = name, row.get("sitting", "")
                 self._points[sitting] = self._points.get(sitting, 0.0) + _number(mark[1])
                 self._verdicts.setdefault(sitting, Counter())[mark[0].partition(":")[0]] += 1
@@ -73,7 +75,7 @@ class EarlierMarks:
         in_marks: Counter[str] = Counter()
         others = {name for name, sitting in self._points if not sitting}
         for row in rows_of(summary):
-            sitting = folded(row.get("student", "")), row.get("sitting", "")
+            sitting = folded(self._renamed(row.get("student", ""))), row.get("sitting", "")
             others.discard(sitting[0])
             points = self._points.get(sitting, 0.0)
             in_marks.update(self._verdicts.get(sitting, ()))
@@ -102,13 +104,22 @@ class History:
     marks with adjustments those are listed too that changed without an answer.
     """
 
-    def __init__(self, folder: Path, day: str, *, is_adjusted: bool = False) -> None:
+    def __init__(
+        self,
+        folder: Path,
+        day: str,
+        renamed: Callable[[str], str] = str,
+        *,
+        is_adjusted: bool = False,
+    ) -> None:
         self._is_adjusted = is_adjusted
         path, summary = folder / "changes.csv", folder / "summary.csv"
         self._day = day
-        self._earlier = [_plain_row(row) for row in rows_of(path)] if path.exists() else []
+        earlier = [_plain_row(row) for row in rows_of(path)] if path.exists() else []
+        self._earlier = [{**row, "student": renamed(row["student"])} for row in earlier]
         self._last = {_answer_id(row): row for row in self._earlier}
-        self._marks = _marks_in(rows_of(summary)) if summary.exists() else {}
+        before = rows_of(summary) if summary.exists() else ()
+        self._marks = _marks_in({**row, "student": renamed(row.get("student", ""))} for row in before)
         self._new: list[dict[str, Any]] = []
 
     def add(self, change: dict[str, Any]) -> None:

@@ -9,7 +9,7 @@ from __future__ import annotations
 import difflib
 import math
 import re
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from datetime import datetime
 from functools import cached_property
@@ -149,7 +149,7 @@ class Decisions:
 
 class DecisionFiles:
     """Files in which people write decisions: those of a folder of marks, and a file of accepted answers, by
-    default ``accepted.csv`` of the folder.
+    default ``accepted.csv`` of the folder; ``renamed`` returns the name under which the record shows a student.
 
     Raises
     ------
@@ -157,7 +157,10 @@ class DecisionFiles:
         A file cannot be read, a line names no answer, or its points are none.
     """
 
-    def __init__(self, folder: Path | None, accepted: Path | None = None) -> None:
+    def __init__(
+        self, folder: Path | None, accepted: Path | None = None, renamed: Callable[[str], str] = str
+    ) -> None:
+        self._renamed = renamed
         self.path = None if folder is None else folder / DECISIONS_FILE
         self._before = None if folder is None else folder / TO_MARK_FILE
         self.files: dict[Path, list[Decision]] = {}
@@ -192,7 +195,8 @@ class DecisionFiles:
                 ]
             listed = path.name == TO_MARK_FILE or ("kind" in row and row.get("out_of", "") != "")
             decision = _decision(location, number, row, more, by=path.name, listed=listed)
-            found += [decision] if decision is not None else []
+            if decision is not None:
+                found.append(decision._replace(student=self._renamed(decision.student)))
         self.files[path] = found
         return found
 

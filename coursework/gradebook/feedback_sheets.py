@@ -229,7 +229,10 @@ def heading_of(course: Course, issued: Issued, student: str, sitting: int, lang:
         title=text_in(stated.get("title") or {}, lang) or str(stated.get("name", "")),
         course=text_in(stated.get("course") or {}, lang) or course.folder.title(lang),
         student=student,
-        identity=printed_columns(stated.get("identity") or (), roster_cells, lang),
+        is_code=issued.is_anonymous,
+        identity=()
+        if issued.is_anonymous
+        else printed_columns(stated.get("identity") or (), roster_cells, lang),
         date=date_text(datetime.date.fromisoformat(date) if date else None, lang),
         duration=text_in(stated.get("duration") or {}, lang),
         version=next(filter(None, versions), ""),

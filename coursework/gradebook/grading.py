@@ -78,7 +78,7 @@ def grade_files(
     issued = Issued.read(issued_path)
     issued.carry = issued.carry if carry is None else carry
     shows_solutions(issued, form)
-    files = DecisionFiles(out, accepted)
+    files = DecisionFiles(out, accepted, issued.renamed)
 
     def rows() -> Iterator[AnswerRow | Rejected | PlatformFile]:
         for file in find(submissions):
@@ -129,8 +129,8 @@ def write_marks(
 ) -> Gradebook:
     """Write the files of :func:`grade_files` for sheets that are marked on demand, with the
     ``decisions`` that count; ``charged`` contains the penalties of late submissions as shares of the points."""
-    before = EarlierMarks(out / "marks.csv")
-    history = History(out, _day(form), is_adjusted=bool(decisions.steps))
+    before = EarlierMarks(out / "marks.csv", issued.renamed)
+    history = History(out, _day(form), issued.renamed, is_adjusted=bool(decisions.steps))
     check_steps(decisions.standing_steps, issued)
     adjustments = decisions.adjustments
     book = Gradebook(adjustments.on(issued), sheets.rows_in, sheets.blanks, sheets.rejected, sheets.warnings)
@@ -200,7 +200,7 @@ def _write_counts(
         for change in history.rows(rows):
             changes.write(change)
     for row in gradebook.rejected_rows(book.rejected):
-        rejected.write(row)
+        rejected.write({**row, "student": book.issued.renamed(row["student"])})
 
 
 def grade_edited_marks(
@@ -228,7 +228,8 @@ def grade_edited_marks(
     issued = Issued.read(issued_path)
     issued.carry = issued.carry if carry is None else carry
     shows_solutions(issued, form)
-    decisions, files = DecisionFiles(marks.parent).decisions, DecisionFiles(out)
+    decisions = DecisionFiles(marks.parent, renamed=issued.renamed).decisions
+    files = DecisionFiles(out, renamed=issued.renamed)
     standing = EditedMarks(course, issued, marks)
     sheets = standing.sheets
     feedback = usual_feedback(sheets) if feedback is None else feedback
@@ -239,7 +240,7 @@ def grade_edited_marks(
     adjustments = decisions.adjustments
     book = Gradebook(adjustments.on(issued), sheets.rows_in, 0, sheets.rejected, sheets.warnings)
     sheets_shown = []
-    history = History(out, _day(form))
+    history = History(out, _day(form), issued.renamed)
     with Tables(out, spreadsheet) as tables:
         rejected = tables.open("rejected.csv", REJECTED_COLUMNS)
         changes = tables.open("changes.csv", CHANGES_COLUMNS)

@@ -7,6 +7,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
+from coursework.issuing.issued import codes_shown
 from coursework.sheets.answer_pages import SIZES, AnswerPage, answer_pages, paper_code
 
 if TYPE_CHECKING:
@@ -21,14 +22,15 @@ class AnswerPaper:
     """Answer pages of one student and sitting, or of one exercise that was handed out alone."""
 
     assignment: str  #: its name; empty for single exercises
-    student: str  #: empty for a paper without a name
+    student: str  #: as it stands on the paper; empty for a paper without a name
     sitting: int
     records: tuple[Mapping[str, Any], ...]
     size: str  #: of the paper, a4 or letter
+    owner: str = ""  #: the student, where the paper bears another name
 
     @property
     def code(self) -> str:
-        return paper_code(self.assignment, self.student, self.sitting, self.records, self.size)
+        return paper_code(self.assignment, self.owner or self.student, self.sitting, self.records, self.size)
 
     def variants(self, course: Course[Any]) -> tuple[Variant, ...]:
         """Return the exercises of the paper, in order.
@@ -65,8 +67,10 @@ def _papers(issued: Mapping[str, Any], size: str) -> Iterator[AnswerPaper]:
         # Papers without a name follow each other, each with the exercises of the assignment.
         nobody = -1 if student else number // max(1, len(assignment["exercises"]))
         together.setdefault((student, sitting, nobody), []).append(item["record"])
+    codes = codes_shown(issued)
     for (student, sitting, _), records in together.items():
-        yield AnswerPaper(str(assignment["name"]), student, sitting, tuple(records), size)
+        shown = codes.get(student, student)
+        yield AnswerPaper(str(assignment["name"]), shown, sitting, tuple(records), size, student)
 
 
 def _owner_of(item: Mapping[str, Any]) -> tuple[str, int]:
@@ -78,7 +82,7 @@ def printed_handouts(
 ) -> tuple[Handout, ...]:
     """Return the handouts of one paper as printed; with a ``size``, they have separate answer pages."""
     variants = [issue.variant.in_language(lang) for issue in issues]
-    handouts = tuple(variant.handout(issues[0].student) for variant in variants)
+    handouts = tuple(variant.handout(issues[0].shown) for variant in variants)
     if not size:
         return handouts
     records = tuple(issue.variant.record for issue in issues)

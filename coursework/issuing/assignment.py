@@ -25,6 +25,7 @@ from coursework.system.toml_files import TomlReader, line_of, source_of, table_o
 Texts = Mapping[str, str]  #: by language
 EACH = "each"  #: a variant a student
 MOST_VERSIONS = 26
+MOST_WORK_MM = 230  #: what a page holds
 SITTINGS = ("best", "last")
 ANSWERS = ("shown", "never")
 #: Options of ``build`` that the file may contain; the command line takes precedence.
@@ -36,6 +37,7 @@ OPTIONS = (
     "paper",
     "practice",
     "booklet",
+    "attendance",
     "scan",
     "solutions",
     "polygons",
@@ -64,6 +66,7 @@ class AskedExercise:
     points: float | Mapping[str, float] | None = None  #: by part, or a total; the exercise's own by default
     seed: int | None = None  #: the same variant of the assignment for everybody
     given: Mapping[str, Any] = field(default_factory=dict)  #: values that are not drawn, with their units
+    work: int | None = None  #: mm of paper for the reasoning; None: as stated for all
 
     def fixed_seed(self, exercise: CourseExercise[Any]) -> int | None:
         """Return the seed of the variant that everybody gets; None if each has another one."""
@@ -91,9 +94,12 @@ class Assignment:
     date: datetime.date | None = None
     duration: Texts = field(default_factory=dict)
     instructions: Texts = field(default_factory=dict)  #: Markdown
+    rules: Texts | bool = False  #: on the cover, Markdown; True: the usual ones
+    work: int = 0  #: mm of paper after each exercise for the reasoning
     logo: Path | None = None
     logo_alt: Texts = field(default_factory=dict)
     cover: bool = False
+    anonymous: bool = False  #: codes in place of names, until they are lifted
     mark: Scale | None = None
     versions: int | None = None  #: number of versions; None: a variant per student
     identity: tuple[str, ...] = ()
@@ -123,6 +129,7 @@ class Assignment:
             "mark": None if self.mark is None else {"of": self.mark.of, "step": self.mark.step},
             "identity": list(self.identity),
             **({} if self.carry is None else {"carry": list(self.carry)}),
+            **({"anonymous": True} if self.anonymous else {}),
             "sittings": self.sittings,
             "answers": self.answers,
             **({"solutions_after": self.solutions_after.isoformat()} if self.solutions_after else {}),
@@ -207,9 +214,12 @@ class _AssignmentReader(TomlReader):
             "date": self._date("date"),
             "duration": self._texts("duration"),
             "instructions": self._texts("instructions"),
+            "rules": self._rules,
+            "work": self._work,
             "logo": self._logo,
             "logo_alt": self._texts("logo_alt"),
             "cover": self._truth("cover"),
+            "anonymous": self._truth("anonymous"),
             "mark": self._mark,
             "versions": self._versions,
             "identity": self._columns("identity"),
@@ -281,6 +291,22 @@ class _AssignmentReader(TomlReader):
             return dict(value)
 
         return read
+
+    def _rules(self, value: Any) -> Texts | bool:
+        return value if isinstance(value, bool) else self._texts("rules")(value)
+
+    def _work(self, value: Any, number: int = -1) -> int:
+        if isinstance(value, bool) or not isinstance(value, int) or not 0 <= value <= MOST_WORK_MM:
+            raise self.refused_key(
+                "work",
+                Message(
+                    "work is a height in mm from 0 to {most}; found {found}",
+                    most=MOST_WORK_MM,
+                    found=reprlib.repr(value),
+                ),
+                number,
+            )
+        return value
 
     def _truth(self, key: str) -> Callable[[Any], bool]:
         def read(value: Any) -> bool:
@@ -431,7 +457,7 @@ class _AssignmentReader(TomlReader):
         return exercises
 
     def _exercise(self, number: int, table: Mapping[str, Any]) -> AskedExercise:
-        keys = ("name", "parts", "points", "seed", "given")
+        keys = ("name", "parts", "points", "seed", "given", "work")
         for key in table:
             if key not in keys:
                 raise self.refused_key(
@@ -459,9 +485,9 @@ class _AssignmentReader(TomlReader):
                 Message("a seed is a whole number from 0 on; found {found}", found=_short(seed)),
                 number,
             )
-        return AskedExercise(
-            str(name), parts, points, seed, self._given(number, str(name), table.get("given"))
-        )
+        work = self._work(table["work"], number) if "work" in table else None
+        given = self._given(number, str(name), table.get("given"))
+        return AskedExercise(str(name), parts, points, seed, given, work)
 
     def _given(self, number: int, name: str, value: Any) -> Mapping[str, Any]:
         """Return the stated values of given quantities, in canonical units."""

@@ -11,10 +11,12 @@ from coursework.course.course import Course
 from coursework.course.secrecy import Secret
 from coursework.issuing import booklets
 from coursework.issuing.assignment import Assignment
+from coursework.issuing.attendance import list_files
 from coursework.issuing.booklets import Booklet
 from coursework.issuing.issued import COLUMNS, form_rows, issued_content, key_content, key_rows
 from coursework.issuing.issuing import Issue
 from coursework.issuing.papers import IssuedPaper, papers
+from coursework.issuing.students import file_stems
 from coursework.issuing.wide_form import wide_form
 from coursework.rendering.renderer import Renderer, renderer_of
 from coursework.sheets.sheet import AnswerSheet, Handout
@@ -42,6 +44,7 @@ def files(
     *,
     only: Collection[str] | None = None,
     secret: Secret | None = None,
+    lifted: str = "",
 ) -> Iterator[File]:
     """Yield every file of a build, in order: one paper for each student and sitting of an assignment, one for
     each exercise without one.
@@ -56,6 +59,8 @@ def files(
         Students whose papers alone are written, without tables.
     secret
         Secret to store in ``issued.json``.
+    lifted
+        Day on which names took the place of codes, to store there.
     """
     paper = "letter" if "letter" in formats else "a4"
     spreadsheet = SPREADSHEETS["comma" if "decimal-comma" in formats else "point"]
@@ -77,7 +82,10 @@ def files(
             if "no-solutions" not in formats
         )
         yield from booklets.bound(bound, solutions, columns, spreadsheet)
-    yield from tables(course, issues, assignment, spreadsheet, secret)
+    if "attendance" in formats and assignment is not None:
+        langs = tuple(dict.fromkeys(lang for issue in issues for lang in issue.langs))
+        yield from list_files(renderer, issued_papers, langs, spreadsheet)
+    yield from tables(course, issues, assignment, spreadsheet, secret, lifted)
 
 
 def tables(
@@ -86,10 +94,11 @@ def tables(
     assignment: Assignment | None,
     spreadsheet: Spreadsheet,
     secret: Secret | None = None,
+    lifted: str = "",
 ) -> Iterator[File]:
     """Yield the record of issued variants, the form for answers, and the key for the staff; ``secret`` is
     stored if the assignment's file has none."""
-    content = issued_content(issues, assignment, secret)
+    content = issued_content(issues, assignment, secret, lifted)
     yield File(Path("issued.json"), _text(lambda: json_text(content)))
     yield File(Path("answers.csv"), lambda: csv_file(form_rows(issues), COLUMNS, spreadsheet))
     if assignment is not None:
@@ -123,7 +132,7 @@ def _paper(
         for issue in issued_paper.issues:
             variant = issue.variant.in_language(lang)
             path = Path("handouts") / variant.exercise.name / for_student.name
-            yield rendered(path, ".ipynb", renderer.study, partial(variant.study_sheet, issue.student))
+            yield rendered(path, ".ipynb", renderer.study, partial(variant.study_sheet, issue.shown))
     elif "ipynb" in formats:
         yield rendered(for_student, ".ipynb", notebook, paper)
     if "tex" in formats:
@@ -154,9 +163,9 @@ def _tex(
     for issue, figure, drawn in zip(issued_paper.issues, figures, polygons, strict=True):
         variant = issue.variant.in_language(lang)
         sheet: Callable[[], Handout | AnswerSheet] = (
-            partial(variant.answer_sheet, issue.student, polygons=issued_paper.polygons)
+            partial(variant.answer_sheet, issue.shown, polygons=issued_paper.polygons)
             if solved
-            else partial(variant.handout, issue.student)
+            else partial(variant.handout, issue.shown)
         )
         yield rendered(path.with_name(figure), "", renderer.figure_pdf, sheet)
         if solved and issued_paper.polygons and variant.exercise.solution.polygons is not None:
@@ -171,7 +180,9 @@ def _booklets(
     groups: dict[tuple[str, str], list[IssuedPaper]] = {}
     for issued_paper in sorted(issued_papers, key=lambda issued_paper: issued_paper.sorted_by):
         for lang in issued_paper.first.langs:
-            groups.setdefault((issued_paper.folder or "class", lang), []).append(issued_paper)
+            room = "".join(file_stems([issued_paper.room])) if issued_paper.is_by_room else ""
+            name = issued_paper.folder or "-".join(filter(None, ("class", room)))
+            groups.setdefault((name, lang), []).append(issued_paper)
     for (group_name, lang), group in groups.items():
         exercises = max(len(issued_paper.issues) for issued_paper in group)
         for name, part in booklets.parted(f"{group_name}.{lang}", group, exercises, limit):

@@ -3,6 +3,7 @@
 FORMATS = ("pdf", "ipynb", "html", "tex", "nbgrader")
 ADDITIONS = {
     "booklet": "all papers in one PDF",
+    "attendance": "attendance lists by room to sign, and a list of rooms and seats for the door",
     "scan": "answer pages in the PDFs, which coursework scan reads; print them at 100 %, not fitted to the page",
     "practice": "notebooks for self-study, which check answers",
     "letter": "US Letter in place of A4",

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from copy import copy
 from functools import cached_property
@@ -13,7 +14,7 @@ import numpy as np
 
 from coursework.course.secrecy import Secret
 from coursework.errors import BadInput
-from coursework.issuing.identity import Ids, ids_of, run_together, same_id, words_of
+from coursework.issuing.identity import GROUP, Ids, ids_of, is_called, run_together, same_id, words_of
 from coursework.issuing.students import folded, unaccented
 from coursework.messages import Message
 from coursework.system.json_files import json_of, read_json
@@ -30,9 +31,12 @@ class Issued:
 
     Several students may share a record, as with versions, and a student may have an exercise in several
     sittings. The records of a pool belong to nobody: a platform draws, and every student may get any of them.
+
+    As long as an assignment is anonymous, students go by their codes, unless the record is read ``by_name``; a name or an
+    identifier still leads to its code.
     """
 
-    def __init__(self, content: Mapping[str, Any], source: str):
+    def __init__(self, content: Mapping[str, Any], source: str, *, by_name: bool = False):
         records = content.get("issued") if isinstance(content, Mapping) else None
         if not isinstance(records, list) or not records:
             raise BadInput(
@@ -88,10 +92,40 @@ class Issued:
         self.exercises = tuple(dict.fromkeys(exercise for exercise, _ in self.records))
         listed = self.columns if self.is_pool and self.has_roster else ()
         self.students = tuple(dict.fromkeys((*(student for student, _ in self._sittings), *listed)))
+        self._codes = {code_key(code): name for name, code in _codes(content, source).items()}
+        self._shown: dict[str, str] = {}  #: codes in place of names
         self.has_sittings = any(max(seeds) > 1 for seeds in self._sittings.values())
         self._named = frozenset(self.students)
         self._known = {folded(s): s for s in self.students}
         self._people = _People(self.students, self.columns)
+        if not by_name:
+            self._show(codes_shown(content))
+
+    def _show(self, codes: Mapping[str, str]) -> None:
+        """Show codes in place of names everywhere, and of the columns of the roster the groups alone."""
+        if not codes:
+            return
+        self._shown = dict(codes)
+        self.owners = {key: tuple(codes.get(s, s) for s in names) for key, names in self.owners.items()}
+        self.seeds = {(codes.get(s, s), e): seed for (s, e), seed in self.seeds.items()}
+        self._sittings = {(codes.get(s, s), e): seeds for (s, e), seeds in self._sittings.items()}
+        self._langs = {(codes.get(s, s), *key): lang for (s, *key), lang in self._langs.items()}  # type: ignore[misc]
+        self.columns = {
+            codes.get(s, s): {title: text for title, text in cells.items() if is_called(title, GROUP)}
+            for s, cells in self.columns.items()
+        }
+        # In the order of the codes: that of the roster would tell who is who.
+        self.students = tuple(sorted(codes.get(s, s) for s in self.students))
+        self._named = frozenset(codes.values())
+
+    @property
+    def is_anonymous(self) -> bool:
+        """Return whether codes stand in place of names."""
+        return bool(self._shown)
+
+    def renamed(self, name: str) -> str:
+        """Return a name or a code of an earlier table as the record shows the student now; any other text as it is."""
+        return (self.student(name) or name) if self._codes and name else name
 
     def _add_owner(self, student: str, key: tuple[str, int], sitting: int) -> None:
         exercise, seed = key
@@ -148,6 +182,14 @@ class Issued:
         ``ids`` are the identifiers from a platform; they take precedence over the name, whose words may then
         be in any order.
         """
+        if name in self._named:
+            return name
+        if self._codes and (coded := self._codes.get(code_key(name))):
+            return self._shown.get(coded, coded)
+        found = self._found(name, ids)
+        return found if found is None else self._shown.get(found, found)
+
+    def _found(self, name: str, ids: Ids | None) -> str | None:
         if ids and (match := self._people.of_ids(ids)):
             return match
         if name in self._named:
@@ -172,7 +214,8 @@ class Issued:
             for n in names
             if n
         )
-        return next(filter(None, matches), None) if self.has_roster else None
+        found = next(filter(None, matches), None) if self.has_roster else None
+        return found if found is None else self._shown.get(found, found)
 
     def _newcomer(self, name: str, ids: Ids) -> str:
         """Return the name of a student without a roster; people of the same name are distinguished by an
@@ -395,6 +438,29 @@ def _columns(content: Any, source: str) -> dict[str, Mapping[str, str]]:
     return {str(s): {str(c): str(v) for c, v in row.items()} for s, row in content.items()}
 
 
+CODES = "codes"  #: key of the codes that stand on anonymous papers, by student
+LIFTED = "lifted"  #: key of the day on which names took their place again
+
+
+def code_key(code: str) -> str:
+    """Return a code as it is compared: without case, spaces and dashes."""
+    return re.sub(r"[\W_]", "", code).upper()
+
+
+def codes_shown(content: Mapping[str, Any]) -> Mapping[str, str]:
+    """Return the codes by student that stand in place of names; none once anonymity is lifted."""
+    return {} if content.get(LIFTED) else content.get(CODES) or {}
+
+
+def _codes(content: Mapping[str, Any], source: str) -> Mapping[str, str]:
+    codes = content.get(CODES) or {}
+    if not isinstance(codes, Mapping) or not all(isinstance(code, str) for code in codes.values()):
+        raise BadInput(
+            "{source}: the codes in it are no texts by student; 'coursework build' writes them", source=source
+        )
+    return codes
+
+
 SECRET = "secret"  #: key of the assignment's secret in an instructor's ``issued.json``
 
 
@@ -416,21 +482,27 @@ def secret_of(content: Mapping[str, Any] | None, source: str = "what was issued"
 
 
 def without_secret(content: Mapping[str, Any]) -> dict[str, Any]:
-    """Return an ``issued.json`` without the secret, for marking."""
-    return {key: value for key, value in content.items() if key != SECRET}
+    """Return an ``issued.json`` without the secret and the codes, for marking."""
+    return {key: value for key, value in content.items() if key not in (SECRET, CODES, LIFTED)}
 
 
 def issued_content(
-    issues: Sequence[Issue], assignment: Assignment | None = None, secret: Secret | None = None
+    issues: Sequence[Issue],
+    assignment: Assignment | None = None,
+    secret: Secret | None = None,
+    lifted: str = "",
 ) -> dict[str, Any]:
-    """Return the content of ``issued.json``: the record of each student, without answers. With a ``secret``,
-    the file is for the instructor only."""
+    """Return the content of ``issued.json``: the record of each student, without answers. With a ``secret``, or with codes,
+    the file is for the instructor only; ``lifted`` is the day on which names took the place of codes."""
+    codes = {i.student: i.code for i in issues if i.code}
     columns = {i.student: dict(i.columns) for i in issues if i.student and i.columns}
     return {
         "format": ISSUED_FORMAT,
         "roster": any(i.student for i in issues),
         **({} if assignment is None else {"assignment": assignment.stated()}),
         **({} if secret is None else {SECRET: secret.text}),
+        **({CODES: codes} if codes else {}),
+        **({LIFTED: lifted} if lifted else {}),
         **({"students": columns} if columns else {}),
         "issued": [_item(i) for i in issues],
     }
@@ -485,7 +557,7 @@ KEY_DIGITS = 10
 
 def key_content(issues: Iterable[Issue]) -> list[dict[str, Any]]:
     """Return the content of ``key.json``: the issued records with their answers, to :data:`KEY_DIGITS`."""
-    return [{"student": i.student, **record_with_answers(i.variant, _in_key)} for i in issues]
+    return [{"student": i.shown, **record_with_answers(i.variant, _in_key)} for i in by_code(issues)]
 
 
 def _in_key(value: Any, margin: float | None = None) -> Any:
@@ -521,12 +593,17 @@ def key_rows(key: Iterable[Mapping[str, Any]]) -> Iterator[dict[str, Any]]:
             }
 
 
+def by_code(issues: Iterable[Issue]) -> list[Issue]:
+    """Return the issued variants in the order of the codes, which tells nothing of the names; as they are without codes."""
+    return sorted(issues, key=lambda issue: (issue.code, issue.sitting if issue.code else 0))
+
+
 def form_rows(issues: Iterable[Issue]) -> Iterator[dict[str, Any]]:
     """Yield the rows of ``answers.csv``, an empty form."""
-    for issued in issues:
+    for issued in by_code(issues):
         for part in issued.variant.parts:
             yield {
-                "student": issued.student,
+                "student": issued.shown,
                 "exercise": issued.variant.exercise.name,
                 "seed": issued.variant.seed,
                 "part": part.id,

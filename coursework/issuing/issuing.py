@@ -260,6 +260,12 @@ class Issue:
     sitting: int = 1  #: 2 for a make-up
     version: str = ""  #: A to D, if there are versions
     columns: Mapping[str, str] = field(default_factory=dict)  #: of the student's row in the roster
+    code: str = ""  #: that stands on an anonymous paper in place of the name
+
+    @property
+    def shown(self) -> str:
+        """Return what stands on the paper: the code, else the name."""
+        return self.code or self.student
 
 
 def issue(

@@ -22,7 +22,7 @@ from coursework.errors import BadInput, counted, nearest
 from coursework.issuing.assignment import AskedExercise, Assignment
 from coursework.issuing.exam_columns import room_of, seat_of
 from coursework.issuing.flaws import try_judges
-from coursework.issuing.issued import secret_of
+from coursework.issuing.issued import CODES, secret_of
 from coursework.issuing.issuing import Issue, check_languages, drawn_by, reservations, whose_languages
 from coursework.issuing.roster import Student
 from coursework.issuing.students import file_stems, folded, student_named
@@ -79,7 +79,8 @@ def assign_variants(
     for asked_exercise in assignment.exercises:
         for sheet, variant in zip(papers, assigner.variants(asked_exercise, sittings, versions), strict=True):
             papers[sheet].append(variant)
-    stems = dict(zip(map(assigner.of, everybody), assigner.stems(everybody), strict=True))
+    codes = assigner.codes(everybody) if assignment.anonymous else {}
+    stems = dict(zip(map(assigner.of, everybody), assigner.stems(everybody, codes), strict=True))
     issues = []
     for (student, sitting), (sheet, variants) in zip(sittings, papers.items(), strict=True):
         student_langs = (student.lang,) if student.lang else tuple(langs)
@@ -94,11 +95,23 @@ def assign_variants(
                 sitting,
                 version,
                 student.columns,
+                codes.get(student.name, ""),
             )
             for v in variants
         ]
     stored_secret = None if assignment.secret is not None else assigner.secret
     return AssignedVariants(issues, assigner.notes, stored_secret, assigner.is_new)
+
+
+#: Signs of codes: none that is taken for another in handwriting, and no vowel, so that no code is a word.
+_SIGNS = "2345679CDFHJKMNPRTVWXY"
+
+
+def _code(digest: bytes) -> str:
+    """Return a code of six signs, ``K7M-3XP``."""
+    number = int.from_bytes(digest[:16], "little")
+    signs = "".join(_SIGNS[number // len(_SIGNS) ** k % len(_SIGNS)] for k in range(6))
+    return f"{signs[:3]}-{signs[3:]}"
 
 
 def _named(name: str, students: Sequence[Student]) -> Student:
@@ -129,6 +142,7 @@ class _Assigner:
         self.is_new = False
         self._items = list((before or {}).get("issued", ()))
         self._columns = dict((before or {}).get("students", {}))
+        self._codes: Mapping[str, str] = (before or {}).get(CODES) or {}
         self._unnamed: dict[int, str] = {}
         stated = (before or {}).get("assignment")
         if before is not None and (
@@ -202,11 +216,21 @@ class _Assigner:
     def sittings(self, name: str) -> int:
         return max((n for student, _, n in self._records if student == name), default=1)
 
-    def stems(self, everybody: Sequence[Student]) -> list[str]:
-        """Return the stems of file names: by the student's name, as before; papers without a name are
+    def codes(self, everybody: Sequence[Student]) -> dict[str, str]:
+        """Return the code of each student: as issued, else drawn by the secret; all differ."""
+        codes = {name: code for name, code in self._codes.items() if any(s.name == name for s in everybody)}
+        used = set(codes.values())
+        for student in (s for s in everybody if s.name and s.name not in codes):
+            tries = (_code(self._key.digest("code", student.draw_key, str(k))) for k in range(1000))
+            codes[student.name] = next(code for code in tries if code not in used)
+            used.add(codes[student.name])
+        return codes
+
+    def stems(self, everybody: Sequence[Student], codes: Mapping[str, str]) -> list[str]:
+        """Return the stems of file names: by the student's code or name, as before; papers without a name are
         numbered."""
         digits = max(2, len(str(len(everybody))))
-        named = file_stems(s.name for s in everybody)
+        named = file_stems(codes.get(s.name, s.name) for s in everybody)
         return [stem or f"paper-{number:0{digits}}" for number, stem in enumerate(named, start=1)]
 
     # --------------------------------------------------------------- versions

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
+from coursework.issuing.issued import by_code
 from coursework.issuing.issuing import Issue
 from coursework.issuing.students import folded
 from coursework.sheets.units import units_text
@@ -18,12 +19,13 @@ def wide_form(
     A column is titled by the number of its question on the paper, the exercise, the part and the unit. ``identity``
     names columns of the roster by which a person finds a line.
     """
+    issues, identity = by_code(issues), () if any(issue.code for issue in issues) else identity
     needs_seeds = any(not issue.student or issue.sitting > 1 for issue in issues)
     papers: dict[tuple[str, int], dict[str, Any]] = {}
     exercises: dict[str, dict[str, tuple[int, str]]] = {}  #: by part: number of the question, and unit
     for issue in issues:
         name, cells = issue.variant.exercise.name, {folded(t): value for t, value in issue.columns.items()}
-        named = {"student": issue.student, "version": issue.version}
+        named = {"student": issue.shown, "version": issue.version}
         row = papers.setdefault(
             (issue.stem, issue.sitting), {**{t: cells.get(folded(t), "") for t in identity}, **named}
         )

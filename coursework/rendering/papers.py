@@ -114,6 +114,7 @@ def exercises_of(paper: AnyPaper, end: str, write: Body, files: Sequence[Names] 
         handout = views.handout_of(sheet)
         names["called"] = _heading_of(paper, number, handout.title)
         names["start_mm"] = _start_mm(sheet)
+        names["work_mm"] = paper.work_mm[number - 1] if isinstance(paper, Paper) and paper.work_mm else 0
         names["body"] = Markup(write(f"{BODIES[type(paper)]}.{end}", names))
         if isinstance(paper, SolutionPaper):
             names["guide"] = Markup(write(f"parts/guide_rows.{end}", names))

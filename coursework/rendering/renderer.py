@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from coursework.figures.polygons.construction import Construction
     from coursework.rendering.papers import AnyPaper
     from coursework.scenes.animation import Animation
+    from coursework.sheets.attendance import ExamLists
     from coursework.sheets.book import Book
     from coursework.sheets.paper import FeedbackPaper, Paper, SolutionPaper
     from coursework.sheets.report import ReportContent
@@ -130,6 +131,14 @@ class Renderer:
         return pdf.compile_booklet(
             papers.typst_source(self.template_folders, handed, self.paper), self.template_folders
         )
+
+    def attendance_pdf(self, lists: ExamLists, *, public: bool = False) -> bytes:
+        """Return the attendance lists of an exam as a tagged PDF, each room from an odd page on; if ``public``, the list of
+        rooms and seats for the door."""
+        from coursework.rendering import attendance, pdf
+
+        source = attendance.source(self.template_folders, lists, self.paper, public=public)
+        return pdf.compile_pdf(source, self.template_folders)
 
     def book_pdf(self, book: Book, *, apart: bool = False) -> bytes:
         """Return a book as a tagged PDF with contents and index; ``apart``: its solutions alone."""

@@ -24,7 +24,7 @@ class PaperHeading:
     lang: str
     title: str
     course: str
-    student: str  #: empty when the paper is nobody's
+    student: str  #: name or code; empty when the paper is nobody's
     identity: tuple[
         tuple[str, str], ...
     ] = ()  #: what is called so, and what is printed; empty: a box to fill in by hand
@@ -33,6 +33,7 @@ class PaperHeading:
     instructions: str = ""  #: Markdown
     version: str = ""  #: A to D, where versions are dealt out
     logo: Logo | None = None
+    is_code: bool = False  #: a code stands in place of the name
     cover: bool = False  #: a page of its own
     mark_of: str = ""  #: what the mark is out of, as printed; empty where only points count
 
@@ -43,6 +44,7 @@ class Paper:
 
     heading: PaperHeading
     handouts: tuple[Handout, ...]
+    work_mm: tuple[int, ...] = ()  #: height of the room for the reasoning after each exercise; 0: none
 
     @property
     def answer_pages(self) -> tuple[AnswerPage, ...]:

@@ -102,6 +102,13 @@ def install(staging: Path, out: Path, *, anew: bool) -> list[str]:
     return notes
 
 
+def count_as_built(path: Path) -> None:
+    """List a file of a build that a command has written anew as the build's own, so that the next build replaces it."""
+    before, _ = _read(path.parent / LIST)
+    if path.name in before:
+        _write(path.parent / LIST, {**before, path.name: [_digest(path)]})
+
+
 def renew(new: Path, out: Path, record: Path) -> list[str]:
     """Replace the files that an earlier call put into ``out`` by those of ``new``; return notes for the user.
 
