@@ -39,6 +39,7 @@ COMMANDS = {
     "progress": ("study", "progress"),
     "report": ("mark", "report"),
     "scan": ("scan", "scan"),
+    "semester": ("semester", "semester"),
     "serve": ("site", "serve"),
     "show": ("look", "show"),
     "simulate": ("move", "simulate"),
