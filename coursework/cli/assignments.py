@@ -115,7 +115,8 @@ def build_papers(context: click.Context, exercises: Sequence[str]) -> None:
     assignment = None if file is None else read_assignment(file, course)
     settings = BuildSettings(context, file, {} if assignment is None else assignment.options)
     formats = settings.formats
-    if (out := settings.path("out")) is None:
+    out, tried = settings.path("out"), given["dry_run"]
+    if out is None and not tried:
         if assignment is None:
             raise BadInput("no folder to write: --out DIR")
         raise BadInput('{path} names no folder to write: --out DIR, or out = "…" in the file', path=file)
@@ -130,9 +131,13 @@ def build_papers(context: click.Context, exercises: Sequence[str]) -> None:
                 formats=",".join(formats),
             )
     names = () if assignment else exercise_names(course, exercises)
-    writes(context, out)
+    if out is None:
+        out, stood = Path(), None
+    else:
+        stood = _issued_before(out / "issued.json", anew=given["overwrite"])
+    if not tried:
+        writes(context, out)
     record = out / "issued.json"
-    stood = _issued_before(record, anew=given["overwrite"])
     before = None if given["overwrite"] else stood
     if before is None and (given["again"] or given["make_up"]):
         which = "--again" if given["again"] else "--make-up"
@@ -148,6 +153,9 @@ def build_papers(context: click.Context, exercises: Sequence[str]) -> None:
         issued = _issued_assignment(course, assignment, file, settings, record, before, stood)
     else:
         issued = _issued_exercises(course, names, settings, before)
+    if tried:
+        tell_dry_run(course, issued, assignment, formats)
+        return
     names_issued = {issue.student for issue in issued.issues}
     only = {_student_column(name, names_issued) for name in given["again"]} or None
     shared_by_cluster(context, given["cluster"])
@@ -196,6 +204,54 @@ def build_papers(context: click.Context, exercises: Sequence[str]) -> None:
             folder=out / "nbgrader",
             name=title,
         )
+
+
+def tell_dry_run(
+    course: Course, issued: AssignedVariants, assignment: Assignment | None, formats: Sequence[str]
+) -> None:
+    """Say what a build would print, and that nothing was written."""
+    from coursework.issuing.dry_run import dry_run
+
+    paper = "letter" if "letter" in formats else "a4"
+    told = dry_run(course, issued.issues, assignment, paper=paper, scan="scan" in formats)
+    say(
+        "{papers}, {each} each: {pages} in all, {sheets} sheets of paper{measured}",
+        papers=counted(told.papers, "paper"),
+        each=_range(min(told.pages), max(told.pages), "page"),
+        pages=counted(told.total_pages, "page"),
+        sheets=told.total_sheets,
+        measured=""
+        if told.measured == told.papers
+        else Message(" (measured on {count} of them)", count=told.measured),
+    )
+    for number, share in sorted(told.white.items()):
+        say("white space: page {number}, up to {share:.0f} % of its height", number=number, share=100 * share)
+    if not told.white:
+        say("white space: no page is white by more than a quarter")
+    say(
+        "points: {total}{mark}: {exercises}",
+        total=_points(*told.total_points),
+        mark=Message(", mark out of {of:g}", of=assignment.mark.of) if assignment and assignment.mark else "",
+        exercises=", ".join(f"{name} {_points(*each)}" for name, each in told.points.items()),
+    )
+    for name, (used, left) in told.left.items():
+        say(
+            "variants of {exercise}: {used} used, {left} left",
+            exercise=name,
+            used=used,
+            left=Message("very many") if left is None else left,
+        )
+    say("nothing was written")
+
+
+def _range(least: int, most: int, noun: str) -> str:
+    if least == most:
+        return counted(least, noun)
+    return Message("{least} to {most}", least=least, most=counted(most, noun))
+
+
+def _points(low: float, high: float) -> str:
+    return f"{low:g}" if low == high else f"{low:g}–{high:g}"
 
 
 def _roster(settings: BuildSettings, notes: list[str]) -> list[Student]:
@@ -288,7 +344,7 @@ def _issued_assignment(
         students = [Student("") for _ in range(given["count"] or 1)]
     secret = secret_of(stood, str(record))
     issued = assign_variants(course, assignment, students, langs, before, given["make_up"], secret)
-    if issued.is_new:
+    if issued.is_new and not given["dry_run"]:
         notes.append(secret_made(file, record, langs[0]))
     if not given["again"] and not given["make_up"]:
         notes += issued.notes

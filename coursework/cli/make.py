@@ -85,6 +85,11 @@ from coursework.system.limits import MOST_VARIANTS
     metavar="STUDENT",
     help="Write another paper for a student who sits the exam again.",
 )
+@click.option(
+    "--dry-run",
+    is_flag=True,
+    help="Write nothing; print how many pages, how white, for how many points, and how many variants are left.",
+)
 @db_option
 @cluster_option
 @click.pass_context

@@ -148,6 +148,17 @@ def compile_pdf(typst_source: str, folders: Sequence[Path] = ()) -> bytes:
         return _written(_compiler(fonts_of(folders)), files(drawn(typst_source, folders)))
 
 
+def compile_pictures(typst_source: str, folders: Sequence[Path], ppi: float) -> list[bytes]:
+    """Return the pages of a source as PNG, of so many pixels an inch.
+
+    Raises BadStatement as :func:`compile_pdf` does.
+    """
+    sources = files(drawn(typst_source, folders))
+    with _complaints():
+        made = _compiler(fonts_of(folders)).compile(input=sources, format="png", ppi=float(ppi), timestamp=0)
+    return [made] if isinstance(made, bytes) else list(made)
+
+
 def compile_booklet(
     typst_source: str, folders: Sequence[Path] = ()
 ) -> tuple[bytes, tuple[tuple[int, int], ...]]:

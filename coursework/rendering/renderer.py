@@ -132,6 +132,19 @@ class Renderer:
             papers.typst_source(self.template_folders, handed, self.paper), self.template_folders
         )
 
+    def white_shares(self, sheet: Handout | Paper) -> list[float]:
+        """Return for each page of a sheet or a paper, as printed, the largest share of its height that is white."""
+        from coursework.rendering import papers, pdf
+        from coursework.rendering.white_space import PPI, white_share
+        from coursework.sheets.paper import Paper
+
+        source = (
+            papers.typst_source(self.template_folders, [sheet], self.paper)
+            if isinstance(sheet, Paper)
+            else pdf.source(self.template_folders, [sheet], self.paper)
+        )
+        return [white_share(png) for png in pdf.compile_pictures(source, self.template_folders, PPI)]
+
     def attendance_pdf(self, lists: ExamLists, *, public: bool = False) -> bytes:
         """Return the attendance lists of an exam as a tagged PDF, each room from an odd page on; if ``public``, the list of
         rooms and seats for the door."""

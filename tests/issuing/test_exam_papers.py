@@ -124,6 +124,36 @@ def test_papers_bear_codes_rooms_and_times_and_lists_say_who_is_who(exam, capsys
     }
 
 
+def test_a_dry_run_tells_pages_white_points_and_variants_and_writes_nothing(small_course, tmp_path, capsys):
+    (tmp_path / "class.csv").write_text(ROSTER)
+    exam = EXAM.replace('secret = "0123456789abcdef0123456789abcdef"\n', "").replace(
+        "roster", "versions = 2\nroster", 1
+    )
+    (tmp_path / "final.toml").write_text(exam)
+    out = tmp_path / "out"
+    assert (
+        run(
+            [
+                "--course",
+                str(small_course),
+                "build",
+                str(tmp_path / "final.toml"),
+                "--out",
+                str(out),
+                "--dry-run",
+            ]
+        )
+        == 0
+    )
+    told = capsys.readouterr().out.splitlines()
+    assert told[0] == "4 papers, 2 pages each: 8 pages in all, 4 sheets of paper (measured on 2 of them)"
+    assert told[1].startswith("white space: page 1, up to ")
+    assert told[-3:-1] == ["points: 4: crank_pin 4", told[-2]]
+    assert told[-2].startswith("variants of crank_pin: 2 used, ")
+    assert told[-1] == "nothing was written"
+    assert not out.exists()
+
+
 def test_a_room_for_the_reasoning_that_no_page_holds_is_refused(small_course, tmp_path, capsys):
     (tmp_path / "class.csv").write_text(ROSTER)
     for line in ("work = 500", "work = -1", 'work = "half"', "work = true"):
