@@ -13,7 +13,7 @@ from sqlalchemy import BindParameter, ColumnElement, Connection, Select, bindpar
 from coursework.database.people import put_people
 from coursework.database.tables import assignment, dealt, variant
 from coursework.errors import BadInput, nearest
-from coursework.issuing.issued import ISSUED_FORMAT, SECRET, Issued, secret_of
+from coursework.issuing.issued import CODE, ISSUED_FORMAT, SECRET, Issued, codes_shown, secret_of
 from coursework.issuing.roster import Student
 
 _Place = tuple[
@@ -80,7 +80,7 @@ def put_issued(connection: Connection, content: Mapping[str, Any], name: str = "
         "stated": content.get("assignment"),
         "has_roster": issued.has_roster,
         "is_pool": issued.is_pool,
-        "columns": {s: dict(roster_columns) for s, roster_columns in issued.columns.items()},
+        "columns": _with_codes(issued.columns, codes_shown(content)),
         **({} if (secret := secret_of(content)) is None else {"secret": secret.text}),
     }
     number, before = _assignment(connection, name, course, values)
@@ -89,6 +89,16 @@ def put_issued(connection: Connection, content: Mapping[str, Any], name: str = "
     people = _people(connection, issued) if issued.has_roster and not issued.is_pool else {}
     _put_dealt(connection, name, before, items, variants, people)
     return number
+
+
+def _with_codes(
+    columns: Mapping[str, Mapping[str, str]], codes: Mapping[str, str]
+) -> dict[str, dict[str, str]]:
+    """Return the columns of the roster by student, with the codes of an anonymous assignment among them."""
+    with_codes = {student: dict(cells) for student, cells in columns.items()}
+    for student, code in codes.items():
+        with_codes.setdefault(student, {})[CODE] = code
+    return with_codes
 
 
 def _assignment(

@@ -31,7 +31,7 @@ from coursework.gradebook.waiting import (
     groups,
     margins_of,
 )
-from coursework.issuing.issued import Issued
+from coursework.issuing.issued import CODE, Issued
 from coursework.issuing.students import namesakes
 from coursework.messages import localised
 
@@ -250,6 +250,17 @@ class ClassState:
         """Number of answers and rows that wait for a person."""
         answers = sum(len(group.members) for group in self.open.values() if group.why not in SHOWN_ON_REQUEST)
         return answers + sum(row.waits for row in self.named)
+
+    @cached_property
+    def codes(self) -> Mapping[str, str]:
+        """Codes that stand in place of names, by student: of an anonymous assignment, until nothing waits any more."""
+        if not (self.issued.assignment or {}).get("anonymous") or not self.waiting:
+            return {}
+        return {student: cells[CODE] for student, cells in self.issued.columns.items() if CODE in cells}
+
+    def shown(self, student: str) -> str:
+        """Return what a page shows of a student: the code, else the name."""
+        return self.codes.get(student, student)
 
     @cached_property
     def unplaced(self) -> tuple[tuple[str, Rejected, str], ...]:

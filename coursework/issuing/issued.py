@@ -165,7 +165,7 @@ class Issued:
         return content
 
     @staticmethod
-    def of(data: bytes, source: str) -> Issued:
+    def of(data: bytes, source: str, *, by_name: bool = False) -> Issued:
         """Return the record of the bytes of an ``issued.json``.
 
         Raises
@@ -173,7 +173,7 @@ class Issued:
         BadInput
             They were not written by ``build``.
         """
-        return Issued(json_of(data, source), source)
+        return Issued(json_of(data, source), source, by_name=by_name)
 
     def student(self, name: str, ids: Ids | None = None) -> str | None:
         """Return the student's name as issued, or, without a roster, as first seen; None for a name that is
@@ -439,6 +439,7 @@ def _columns(content: Any, source: str) -> dict[str, Mapping[str, str]]:
 
 
 CODES = "codes"  #: key of the codes that stand on anonymous papers, by student
+CODE = "anonymous code"  #: column of the roster in a database that holds the code of a student
 LIFTED = "lifted"  #: key of the day on which names took their place again
 
 

@@ -78,9 +78,11 @@ def rows(now: ClassState) -> list[ClassRow]:
     for sheet, graded in now.graded.items():
         if graded.sitting == now.results[graded.student].sitting:
             counted.setdefault(graded.student, {}).update(_cells(now, now.machine[sheet], graded))
+    # In the order of the codes, if names are hidden: that of the roster would tell who is who.
+    students = sorted(now.results, key=now.shown) if now.codes else list(now.results)
     return [
-        _row(now, number, student, result, counted.get(student, {}))
-        for number, (student, result) in enumerate(now.results.items())
+        _row(now, number, student, now.results[student], counted.get(student, {}))
+        for number, student in enumerate(students)
     ]
 
 
@@ -101,7 +103,7 @@ def _row(
     now: ClassState, number: int, student: str, result: Result, cells: Mapping[tuple[str, str], Cell]
 ) -> ClassRow:
     columns = own_columns(now.issued, student)
-    titles = (now.issued.assignment or {}).get("identity") or ()
+    titles = () if now.codes else (now.issued.assignment or {}).get("identity") or ()
     identity = " ".join(filter(None, (columns.get(folded(str(title)), "") for title in titles)))
     submitted = now.site_submissions.get(student)
     tries = (
@@ -112,7 +114,7 @@ def _row(
         else 0
     )
     return ClassRow(
-        number, student, identity, tuple(cells.get(question, BLANK) for question in now.questions),
+        number, now.shown(student), identity, tuple(cells.get(question, BLANK) for question in now.questions),
         result.points, result.out_of, mark_of(now.adjusted, result.counts, result.out_of),
         tries, submitted.late if submitted else 0, bool(cells) or submitted is not None, result.open,
     )  # fmt: skip

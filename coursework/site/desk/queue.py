@@ -145,7 +145,7 @@ def card_of(request: Request, now: ClassState, item: QueueItem) -> QueueCard:
     margin = "" if first.margin is None else localise(significant(first.margin, 2), request.lang)
     return QueueCard(
         item, question, first, waits,
-        tuple((entry.student, decided_words(request, done, done.made)) for entry, done in decisions if done is not None and done.made), now.number(group.exercise, group.part), margin,
+        tuple((now.shown(entry.student), decided_words(request, done, done.made)) for entry, done in decisions if done is not None and done.made), now.number(group.exercise, group.part), margin,
         raw_texts([entry.mark for entry in group.members]), steps(first.mark.out_of),
         sum(len(entry.members) for entry in _alike(now, group)),
         _drawing(request, now.about.id, first.sheet, question),
@@ -360,7 +360,7 @@ def _chosen(request: Request, now: ClassState, group: AnswerGroup) -> Sequence[A
     if request.form.text("all"):
         return waits
     student = request.form.text("student")
-    return [answer for answer in waits if answer.student == student] or waits[:1]
+    return [answer for answer in waits if now.shown(answer.student) == student] or waits[:1]
 
 
 def _decision(answer: AnswerToReview, kind: str, points: float | None, reason: str, by: str) -> Decision:

@@ -108,9 +108,9 @@ def student_page(request: Request) -> Response:
     sheets = [_sheet(request, now, sheet, by_place, drawn) for sheet in now.machine if sheet[0] == student]
     sheets.sort(key=lambda entry: (-entry.graded.sitting, now.issued.exercises.index(entry.graded.exercise)))
     return class_page_of(
-        request, now, "site/instructor/student", "class", student=student, result=result, told=message,
-        mark=localise(mark_of(now.adjusted, result.counts, result.out_of), request.lang), columns=_columns(now, student),
-        tries=[(moment(entry.received_at, request.lang), entry) for entry in tries], known=person or 0,
+        request, now, "site/instructor/student", "class", student=now.shown(student), result=result, told=message,
+        mark=localise(mark_of(now.adjusted, result.counts, result.out_of), request.lang), columns=[] if now.codes else _columns(now, student),
+        tries=[(moment(entry.received_at, request.lang), entry) for entry in tries], known=0 if now.codes else person or 0,
         sittings=[(n, list(group)) for n, group in groupby(sheets, key=lambda entry: entry.graded.sitting)],
         practised=[_practised(request, name, *alone[name]) for name in now.issued.exercises if name in alone],
         rejected=[entry for entry in now.rejected if entry.student == student],
@@ -119,9 +119,9 @@ def student_page(request: Request) -> Response:
 
 def _student(request: Request, now: ClassState) -> str:
     query = request.form.text("name") if request.is_post else request.query_params.get("name", "")
-    if query in now.results:
+    if query in now.results and not now.codes:
         return query
-    student = {folded(name): name for name in now.results}.get(folded(query))
+    student = {folded(now.shown(name)): name for name in now.results}.get(folded(query))
     if student is None:
         raise HTTPException("own", 404)
     return student

@@ -76,7 +76,7 @@ def spoken(site: Site, definition: Assignment, lang: str) -> str:
 
 
 def _issued(request: Request, sent: Upload) -> NewAssignment:
-    issued = Issued.of(sent.data, "issued.json")
+    issued = Issued.of(sent.data, "issued.json", by_name=True)
     name = str((issued.assignment or {}).get("name") or _name(request.form.text("name")))
     if not name:
         raise BadInput(request.words["publishing"]["faults"]["name"])
