@@ -40,16 +40,16 @@ class Assessed(NamedTuple):
     groups: Mapping[str, str]  #: by student
     presence: Mapping[str, str]  #: by student, where somebody stated it: "", absent or excused
 
-    def result(self, scored: Scored) -> Result:
+    def result(self, scored: Scored) -> Assessment:
         """Return the result of a student: absent if nothing was handed in, unless the presence is stated."""
         mark = exact(typed_number(scored.points)) * OF / exact(self.of)
         if scored.has_answered:
-            return Result(mark, PROVISIONAL if scored.open else "")
+            return Assessment(mark, PROVISIONAL if scored.open else "")
         status = self.presence.get(folded(scored.name), ABSENT)
-        return Result(None if status else mark, status)
+        return Assessment(None if status else mark, status)
 
 
-class Result(NamedTuple):
+class Assessment(NamedTuple):
     """Mark of a student in an assignment, out of :data:`OF`, and what it is if it is not final."""
 
     mark: Fraction | None
@@ -64,7 +64,7 @@ class SemesterLine:
     numbers: set[str] = field(default_factory=set)  #: as they are compared
     number: str = ""
     group: str = ""
-    results: dict[str, Result] = field(default_factory=dict)  #: by assignment
+    results: dict[str, Assessment] = field(default_factory=dict)  #: by assignment
 
 
 def assessed(marks: Path, weight: float, name: str = "") -> Assessed:
@@ -154,7 +154,7 @@ def average(line: SemesterLine, assignments: Sequence[Assessed], absence: str) -
     """
     total = weights = Fraction(0)
     for assignment in assignments:
-        result = line.results.get(assignment.name, Result(None, ABSENT))
+        result = line.results.get(assignment.name, Assessment(None, ABSENT))
         if result.mark is None and (result.status == EXCUSED or absence == "excused"):
             continue
         if result.mark is None and absence == "none":
@@ -166,7 +166,7 @@ def average(line: SemesterLine, assignments: Sequence[Assessed], absence: str) -
 
 def status_of(line: SemesterLine, assignments: Sequence[Assessed]) -> str:
     """Return what keeps a line from being final: ``provisional: final; absent: midterm``; else ``final``."""
-    results = {a.name: line.results.get(a.name, Result(None, ABSENT)).status for a in assignments}
+    results = {a.name: line.results.get(a.name, Assessment(None, ABSENT)).status for a in assignments}
     told = [
         f"{status}: {', '.join(names)}"
         for status in (PROVISIONAL, ABSENT, EXCUSED)
@@ -187,9 +187,9 @@ def rows(
 ) -> Iterator[dict[str, Any]]:
     """Yield the rows of ``semester.csv``: numbers, and the text ``12.5*``, with this decimal sign, of what may still change."""
     for line in lines:
-        results = {a.name: line.results.get(a.name, Result(None, ABSENT)) for a in assignments}
+        results = {a.name: line.results.get(a.name, Assessment(None, ABSENT)) for a in assignments}
         waits = any(result.status == PROVISIONAL for result in results.values())
-        whole = Result(average(line, assignments, absence), PROVISIONAL if waits else "")
+        whole = Assessment(average(line, assignments, absence), PROVISIONAL if waits else "")
         yield {
             "student": line.name,
             "number": line.number,
@@ -200,7 +200,7 @@ def rows(
         }
 
 
-def _cell(result: Result, sign: str) -> float | str:
+def _cell(result: Assessment, sign: str) -> float | str:
     """Return a mark, rounded half up to hundredths; as a text with a star if it may still change."""
     if result.mark is None:
         return result.status

@@ -1,4 +1,4 @@
-"""What a build would print, measured on some of its papers: pages, white space, points, and variants that are left."""
+"""Measures of a build that is not written, on some of its papers: pages, white space, points, and variants that are left."""
 
 from __future__ import annotations
 

@@ -33,9 +33,9 @@ class PaperHeading:
     instructions: str = ""  #: Markdown
     version: str = ""  #: A to D, where versions are dealt out
     logo: Logo | None = None
-    is_code: bool = False  #: a code stands in place of the name
     cover: bool = False  #: a page of its own
     mark_of: str = ""  #: what the mark is out of, as printed; empty where only points count
+    is_code: bool = False  #: a code stands in place of the name
 
 
 @dataclass(frozen=True)

@@ -134,7 +134,7 @@ def test_a_lost_sheet_comes_again_and_who_makes_up_has_another(cli, tmp_path):
 
 
 def test_build_has_few_options():
-    assert len([p for p in build.params if isinstance(p, click.Option)]) <= 15
+    assert len([p for p in build.params if isinstance(p, click.Option)]) <= 16
 
 
 def test_options_that_an_assignment_does_not_use_are_named(cli, tmp_path):

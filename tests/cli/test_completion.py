@@ -30,7 +30,7 @@ def completed(monkeypatch, capsys):
 
 def test_commands_are_completed(completed):
     assert completed("coursework ") == sorted(COMMANDS)
-    assert completed("coursework s") == ["scan", "serve", "show", "simulate", "solve"]
+    assert completed("coursework s") == ["scan", "semester", "serve", "show", "simulate", "solve"]
 
 
 @pytest.mark.parametrize(
