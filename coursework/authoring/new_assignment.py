@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import datetime
 import json
-from collections.abc import Sequence
+import re
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -79,6 +81,32 @@ def _head(stem: str, course: Course[Any], sheets: Sequence[str], langs: Sequence
         f'secret = "{Secret.new().text}"',
         "",
     ])  # fmt: skip
+
+
+def toml_of(table: Mapping[str, Any]) -> str:
+    """Return the table of an assignment as the text of its file, which reads back as the same table."""
+    own = [f"{key} = {_toml(value)}" for key, value in table.items() if key != "exercises"]
+    entries = [
+        "\n".join(["", "[[exercises]]", *(f"{key} = {_toml(value)}" for key, value in exercise.items())])
+        for exercise in table["exercises"]
+    ]
+    return "\n".join([*own, *entries, ""])
+
+
+def _toml(value: Any) -> str:
+    if isinstance(value, Mapping):
+        return "{ " + ", ".join(f"{_key(key)} = {_toml(item)}" for key, item in value.items()) + " }"
+    if isinstance(value, list):
+        return "[" + ", ".join(map(_toml, value)) + "]"
+    if isinstance(value, datetime.date):
+        return value.isoformat()
+    if isinstance(value, float) and value.is_integer():
+        return f"{value:.0f}"
+    return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")
+
+
+def _key(name: str) -> str:
+    return name if re.fullmatch(r"[A-Za-z0-9_-]+", name) else _toml(name)
 
 
 def _texts(texts: dict[str, str]) -> str:

@@ -124,9 +124,10 @@ class ClassState:
             charged=of_them(self.charged),
             is_whole=False,
         )
-        # An adjustment is of the whole class, and so are its results.
+        # Adjustments are of the whole class, and names stay hidden until nothing of the whole class waits.
         part.__dict__["graded"] = of_them(self.graded)
         part.__dict__["adjusted"] = self.adjusted.among(students)
+        part.__dict__["codes"] = {name: code for name, code in self.codes.items() if name in students}
         return part
 
     @cached_property

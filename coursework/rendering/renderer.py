@@ -23,6 +23,7 @@ if TYPE_CHECKING:
 
 
 PAPERS = ("a4", "letter")
+_SCREEN = 96  #: pixels an inch of a page on a screen
 
 
 class Renderer:
@@ -122,6 +123,13 @@ class Renderer:
         return pdf.compile_pdf(
             papers.typst_source(self.template_folders, [paper], self.paper), self.template_folders
         )
+
+    def paper_images(self, paper: AnyPaper) -> list[bytes]:
+        """Return each page of a paper as a PNG."""
+        from coursework.rendering import papers, pdf
+
+        source = papers.typst_source(self.template_folders, [paper], self.paper)
+        return pdf.compile_pictures(source, self.template_folders, _SCREEN)
 
     def papers_pdf(self, handed: Sequence[AnyPaper]) -> tuple[bytes, tuple[tuple[int, int], ...]]:
         """Several papers in one PDF, each with its own page numbers and from an odd page on, and the first and last page

@@ -1,21 +1,25 @@
 """Publishing: what is handed out, the late ones, extensions, what a student sees of it; and that nobody else may."""
 
+import base64
 import io
 import json
 import re
+import tomllib
 import zipfile
 from dataclasses import replace
-from datetime import UTC, datetime, timedelta
+from datetime import UTC, date, datetime, timedelta
 
 import pytest
 from site_assignments import CLOSES, FORM, OPENS, USUAL, dealt, dealt_by, handed_in, handed_out
 from site_people import MAX, TEACHER, ZOE
 from tables import each_row
 
+from coursework.authoring.new_assignment import toml_of
 from coursework.database.assignments import issued_content, names
 from coursework.database.audit import noted
 from coursework.database.publication import ACCEPT, CHARGE, Publication, extensions, published
 from coursework.errors import unknown
+from coursework.issuing.assignment import read_assignment
 from coursework.issuing.issued import Issued
 from coursework.site.frame import jobs
 from coursework.site.publication import assigning
@@ -462,3 +466,70 @@ def test_practice_tells_what_is_to_be_handed_in_until_it_is(class_of_three):
     assert f'href="/assignments/{number}"' in zoe.get("/practice").text
     handed_in(zoe, number, {"e1-rA": "12"})
     assert f'href="/assignments/{number}"' not in zoe.get("/practice").text
+
+
+# ------------------------------------------------------------------ what a form puts together
+
+CHOSEN = {
+    "title": 'Contrôle n° 3 : "bielle"', "name": "week7", "date": "2026-12-04", "duration": "1 h 30", "mark_of": "20", "versions": "2",
+    "exercise": ["slotted_mechanism", "grashof"], "place.slotted_mechanism": "2", "place.grashof": "1",
+    "part.slotted_mechanism": ["rA", "theta4"], "points.slotted_mechanism.rA": "2,5", "points.slotted_mechanism.theta4": "1",
+}  # fmt: skip
+
+
+def test_a_form_shows_parts_points_and_pages_and_writes_the_file_that_it_issues(
+    class_of_three, staff, tmp_path
+):
+    page = staff.fill("/desk/assignments/new", {**CHOSEN, "do": "look"})
+    assert page.status_code == 200
+    assert not names_of(class_of_three)
+    assert page.text.count('src="data:image/png;base64,') >= 2
+    assert 'name="points.slotted_mechanism.rA" value="2,5"' in page.text
+    file = base64.b64decode(re.search(r'href="data:application/toml;base64,([^"]+)"', page.text)[1])
+    path = tmp_path / "week7.toml"
+    path.write_bytes(file)
+    told = read_assignment(path, class_of_three.site.course)
+    assert (told.date, told.duration, told.versions, told.names) == (
+        date(2026, 12, 4), {"": "1 h 30"}, 2, ("grashof", "slotted_mechanism"),
+    )  # fmt: skip
+    assert told.exercises[1].parts == ("rA", "theta4")
+    assert told.exercises[1].points == {"rA": 2.5, "theta4": 1.0}
+    number = dealt_by(class_of_three, staff, staff.fill("/desk/assignments/new", {**CHOSEN, "accounts": "1"}))
+    stated = content(class_of_three, number)["assignment"]
+    assert (stated["name"], stated["title"][""]) == ("week7", CHOSEN["title"])
+    assert 'name="minutes" min="1" max="1440" value="90"' in staff.get(f"/desk/assignments/{number}").text
+    again = staff.fill("/desk/assignments/new", {"do": "look"}, files={"file": ("week8.toml", file)})
+    assert 'name="source_name" value="week8"' in again.text
+    edited = {
+        "source": file.decode().replace("versions = 2", "versions = 3"),
+        "source_name": "week8",
+        "accounts": "1",
+    }
+    other = dealt_by(class_of_three, staff, staff.fill("/desk/assignments/new", edited))
+    assert list(names_of(class_of_three)) == ["week7", "week8"]
+    assert other != number
+
+
+@pytest.mark.slow
+@each_row(
+    ("data", "told"),
+    [
+        ({"date": "tomorrow"}, "day such as"),
+        ({"points.slotted_mechanism.rA": "many"}, "above 0"),
+        ({"points.slotted_mechanism.rA": "-1"}, "above 0"),
+        ({"exercise": []}, "Choose an exercise"),
+        ({"source": "titel = 1", "source_name": "x"}, "no key"),
+        ({"source": "a = 1"}, "a name"),
+    ],
+)
+def test_a_form_that_makes_no_sense_is_told_before_anything_is_drawn(class_of_three, staff, data, told):
+    reply = staff.fill("/desk/assignments/new", {**CHOSEN, **data, "do": "look"})
+    assert (reply.status_code, told in reply.text) == (422, True), reply.text[:3000]
+
+
+def test_a_table_written_as_a_file_reads_back_as_itself():
+    table = {
+        "title": 'a "b" \\ \n\t\x7f é', "date": date(2026, 1, 2), "mark": {"of": 20.0, "step": 0.25}, "cover": True,
+        "exercises": [{"name": "x", "parts": ["a", "b"], "points": {"a": 1.0, "b.c d": 2.5}}],
+    }  # fmt: skip
+    assert tomllib.loads(toml_of(table)) == table

@@ -14,14 +14,19 @@ from datetime import date, time
 from pathlib import PurePosixPath
 from typing import Any, NamedTuple
 
+from coursework.authoring.new_assignment import toml_of
 from coursework.course.course import Course
+from coursework.course.exercise import ALL
 from coursework.database.assignments import names
 from coursework.database.people import people
-from coursework.errors import BadInput
+from coursework.errors import BadInput, CourseworkError
+from coursework.gradebook.statistics.captions import shortened
 from coursework.issuing.assignment import FILES, OPTIONS, Assignment, assignment_of
 from coursework.issuing.issued import Issued
 from coursework.issuing.roster import Student, read_roster
-from coursework.language.numbers import typed_number
+from coursework.language.numbers import localise, typed_number
+from coursework.markup.markdown import plain_line
+from coursework.sheets.handout import prompt
 from coursework.site.frame.budgets import DESK_FILE
 from coursework.site.frame.forms import read_upload
 from coursework.site.frame.requests import Request, Upload
@@ -30,6 +35,7 @@ from coursework.site.publication.assigning import AssignmentRequest
 from coursework.system.toml_files import table_of
 
 _LONGEST = 80  #: characters of a name
+_WORDS = 110  #: characters of a question in the form
 
 
 class NewAssignment(NamedTuple):
@@ -58,15 +64,13 @@ def read(request: Request) -> NewAssignment:
     texts = request.words["publishing"]["faults"]
     if sent := request.form.upload("issued"):
         return _issued(request, sent)
-    name, table, source = _stated(request)
-    _check_new(request, name)
-    definition = assignment_of(name, table, request.site.course, source)
+    stated = stated_assignment(request)
+    _check_new(request, stated.name)
     students = students_of(request)
     if not students:
         raise BadInput(texts["nobody"])
-    return NewAssignment(
-        name, AssignmentRequest(name, table, students, spoken(request.site, definition, request.lang))
-    )
+    lang = spoken(request.site, stated.definition, request.lang)
+    return NewAssignment(stated.name, AssignmentRequest(stated.name, stated.table, students, lang))
 
 
 def spoken(site: Site, definition: Assignment, lang: str) -> str:
@@ -96,20 +100,50 @@ def _check_new(request: Request, name: str) -> None:
 # ------------------------------------------------------------------ form
 
 
-def _stated(request: Request) -> tuple[str, dict[str, Any], str]:
-    """Return name, table and source text of the assignment, from a file or else from the chosen exercises."""
-    if sent := request.form.upload("file"):
+class StatedAssignment(NamedTuple):
+    """Assignment as a form states it."""
+
+    name: str
+    table: Mapping[str, Any]
+    source: str  #: text of its file
+    definition: Assignment
+    is_of_file: bool  #: it was sent as a file, and not put together by the form
+
+
+def stated_assignment(request: Request) -> StatedAssignment:
+    """Return the assignment that the form states: as a file, as the text of one, or by chosen exercises. What is
+    chosen becomes a file, which is read as any other.
+
+    Raises
+    ------
+    BadInput
+        The form or the file is inconsistent.
+    """
+    form, texts = request.form, request.words["publishing"]["faults"]
+    sent, source = form.upload("file"), form.text("source")
+    is_of_file = bool(sent or source.strip())
+    if sent:
         name = _name(PurePosixPath(sent.name.replace("\\", "/")).stem)
         try:
             source = sent.data.decode("utf-8-sig")
         except UnicodeDecodeError:
-            raise BadInput(request.words["publishing"]["faults"]["utf8"]) from None
-        table = table_of(source, f"{name}.toml")
-        return name, _as_json({k: v for k, v in table.items() if k not in {*FILES, *OPTIONS}}), source
-    return _chosen(request)
+            raise BadInput(texts["utf8"]) from None
+    elif is_of_file:
+        name = _name(form.text("source_name"))
+    else:
+        name, chosen = _chosen(request)
+        source = toml_of(chosen)
+    if not name:
+        raise BadInput(texts["name"])
+    table = table_of(source, f"{name}.toml")
+    ignored = {*FILES, *OPTIONS} if is_of_file else ()
+    fields = _as_json({key: value for key, value in table.items() if key not in ignored})
+    definition = assignment_of(name, fields, request.site.course, source)
+    return StatedAssignment(name, fields, source, definition, is_of_file)
 
 
-def _chosen(request: Request) -> tuple[str, dict[str, Any], str]:
+def _chosen(request: Request) -> tuple[str, dict[str, Any]]:
+    """Return name and table of an assignment of chosen exercises. Raises BadInput: the form is inconsistent."""
     form, texts = request.form, request.words["publishing"]["faults"]
     title, names_of_course = form.text("title").strip()[:200], set(request.site.course.names)
     name = _name(form.text("name") or title)
@@ -118,14 +152,49 @@ def _chosen(request: Request) -> tuple[str, dict[str, Any], str]:
         raise BadInput(texts["name"])
     if not exercises:
         raise BadInput(texts["exercises"])
-    table: dict[str, Any] = {"title": title, "exercises": [{"name": item} for item in exercises]}
+    table: dict[str, Any] = {"title": title}
+    if day := form.text("date").strip():
+        try:
+            table["date"] = date.fromisoformat(day)
+        except ValueError:
+            raise BadInput(texts["date"]) from None
+    if duration := form.text("duration").strip()[:80]:
+        table["duration"] = duration
     if form.text("instructions").strip():
         table["instructions"] = form.text("instructions").strip()[:4000]
     if form.text("mark_of").strip():
-        table["mark"] = {"of": _number(form.text("mark_of"), texts["mark"])}
+        step = (
+            {"step": _number(form.text("mark_step"), texts["mark"])} if form.text("mark_step").strip() else {}
+        )
+        table["mark"] = {"of": _number(form.text("mark_of"), texts["mark"]), **step}
     if (versions := form.text("versions", "each")) != "each":
         table["versions"] = int(_number(versions, texts["versions"]))
-    return name, table, ""
+    places = {item: _place(form.text(f"place.{item}"), k) for k, item in enumerate(exercises)}
+    table["exercises"] = [_asked(request, item) for item in sorted(exercises, key=places.__getitem__)]
+    return name, table
+
+
+def _place(text: str, index: int) -> tuple[float, int]:
+    """Return the key by which a chosen exercise is sorted: its stated place, else that in the form."""
+    number = typed_number(text)
+    return (number if math.isfinite(number) else index + 1.0, index)
+
+
+def _asked(request: Request, name: str) -> dict[str, Any]:
+    """Return the entry of a chosen exercise: the ticked parts if they are not the usual ones, and the points."""
+    form, texts = request.form, request.words["publishing"]["faults"]
+    spec = request.site.course[name].spec
+    entry: dict[str, Any] = {"name": name}
+    ids = [part.id for part in spec.parts]
+    ticked = [part for part in ids if part in form.texts.get(f"part.{name}", ())]
+    if ticked and ticked != [part.id for part in spec.parts if not part.by_request]:
+        entry["parts"] = ticked
+    stated = {part: form.text(f"points.{name}.{part}").strip() for part in ticked or ids}
+    points = {part: _number(text, texts["points"]) for part, text in stated.items() if text}
+    usual = {part.id: part.points for part in spec.parts}
+    if points and any(points[part] != usual[part] for part in points):
+        entry["points"] = points
+    return entry
 
 
 def _number(text: str, fault: str) -> float:
@@ -189,6 +258,62 @@ def _student(person: Any, *, apart: bool) -> Student:
 
 
 # ------------------------------------------------------------------------ exercises
+
+
+class ChosenPart(NamedTuple):
+    """Part of a chosen exercise, in the form."""
+
+    id: str
+    words: str
+    points: str
+    is_ticked: bool
+    is_usual: bool  #: asked unless parts are chosen
+
+
+class ChosenExercise(NamedTuple):
+    """Chosen exercise with its parts, in the form."""
+
+    name: str
+    title: str
+    place: int
+    parts: tuple[ChosenPart, ...]
+    points: str  #: of all ticked parts
+
+
+def chosen_exercises(request: Request) -> list[ChosenExercise]:
+    """Return the exercises that a form chooses, in their order, with the parts and points that it states."""
+    form, course = request.form, request.site.course
+    chosen = [name for name in dict.fromkeys(form.texts.get("exercise", ())) if name in course]
+    places = {name: _place(form.text(f"place.{name}"), k) for k, name in enumerate(chosen)}
+    ordered = sorted(chosen, key=places.__getitem__)
+    return [_with_parts(request, name, place) for place, name in enumerate(ordered, 1)]
+
+
+def _with_parts(request: Request, name: str, place: int) -> ChosenExercise:
+    exercise, form, lang = request.site.course[name], request.form, request.lang
+    lang = lang if lang in exercise.languages else exercise.languages[0]
+    variant = exercise.variant(0, lang, (ALL,))
+    ticked = form.texts.get(f"part.{name}") or [p.id for p in exercise.spec.parts if not p.by_request]
+    parts = []
+    for part in exercise.spec.parts:
+        stated = form.text(f"points.{name}.{part.id}").strip()
+        points = stated or localise(f"{part.points:g}", request.lang)
+        parts.append(
+            ChosenPart(part.id, _words(variant, part, lang), points, part.id in ticked, not part.by_request)
+        )
+    total = sum(
+        number for part in parts if part.is_ticked and math.isfinite(number := typed_number(part.points))
+    )
+    text = localise(f"{total:g}", request.lang)
+    return ChosenExercise(name, _title(request.site.course, name, request.lang), place, tuple(parts), text)
+
+
+def _words(variant: Any, part: Any, lang: str) -> str:
+    """Return the words of a question as plain text, shortened; empty if they cannot be made."""
+    try:
+        return shortened(plain_line(prompt(variant, part), lang), _WORDS)
+    except CourseworkError:
+        return ""
 
 
 def exercise_groups(course: Course[Any], lang: str) -> list[ExerciseGroup]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import base64
 import json
 import math
 from collections.abc import Mapping, Sequence
@@ -37,7 +38,7 @@ from coursework.database.publication import (
     student_assignments,
 )
 from coursework.database.tables import assignment, audit, dealt, delivery, variant
-from coursework.errors import BadInput
+from coursework.errors import BadInput, CourseworkError
 from coursework.issuing.assignment import (
     MOST_VERSIONS,
     SITTINGS,
@@ -46,11 +47,14 @@ from coursework.issuing.assignment import (
     assignment_of,
     text_in,
 )
+from coursework.issuing.exam_columns import minutes_of
 from coursework.issuing.issued import Issued
 from coursework.issuing.issued import issued_content as content_of
 from coursework.issuing.roster import Student
 from coursework.issuing.variant_assignment import assign_variants
+from coursework.language.numbers import localise
 from coursework.language.words import words
+from coursework.rendering.renderer import renderer_of
 from coursework.site.frame.budgets import DESK_FILE
 from coursework.site.frame.jobs import DONE
 from coursework.site.frame.paging import page_of
@@ -73,6 +77,7 @@ from coursework.site.publication import assigning, new_assignment
 from coursework.site.publication.assigning import AssignmentRequest
 
 _NOTED = 30  #: audit lines on a page
+_MOST_PAGES = 16  #: of a preview
 
 
 class ListedAssignment(NamedTuple):
@@ -154,6 +159,8 @@ def new(request: Request) -> Response:
     issued."""
     if not request.is_post:
         return _new_page(request)
+    if request.form.text("do") == "look":
+        return _looked_at(request)
     try:
         form = new_assignment.read(request)
     except BadInput as fault:
@@ -165,11 +172,47 @@ def new(request: Request) -> Response:
     return redirect(f"/desk/assignments/dealing/{token}")
 
 
-def _new_page(request: Request, problem: str = "", status: int = 200) -> Response:
+class PagesPreview(NamedTuple):
+    """Pages of an assignment that is not issued yet, with its file."""
+
+    stated: new_assignment.StatedAssignment
+    pages: tuple[str, ...]  #: as data URLs of images
+    more: int  #: pages that are not shown
+    points: str
+    file: str  #: data URL of the file
+
+
+def _looked_at(request: Request) -> Response:
+    """Return the form with the parts of the chosen exercises, and the pages of the paper with variants that belong
+    to nobody."""
+    try:
+        stated = new_assignment.stated_assignment(request)
+        paper = preview_paper(request.site, stated.definition, request.lang)
+        images = renderer_of(request.site.course.folder).paper_images(paper.paper)
+    except CourseworkError as fault:
+        if isinstance(fault, HTTPException):
+            raise
+        return _new_page(request, str(fault), 422)
+    pages = tuple(_data_url("image/png", image) for image in images[:_MOST_PAGES])
+    points = sum(part.points for variant in paper.variants for part in variant.parts)
+    look = PagesPreview(
+        stated, pages, len(images) - len(pages), localise(f"{points:g}", request.lang),
+        _data_url("application/toml", stated.source.encode("utf-8", "backslashreplace")),
+    )  # fmt: skip
+    return _new_page(request, look=look)
+
+
+def _data_url(kind: str, data: bytes) -> str:
+    return f"data:{kind};base64,{base64.b64encode(data).decode()}"
+
+
+def _new_page(
+    request: Request, problem: str = "", status: int = 200, look: PagesPreview | None = None
+) -> Response:
     exercise_groups = new_assignment.exercise_groups(request.site.course, request.lang)
     return request.render(
         "site/instructor/publish_new", status, exercise_groups=exercise_groups, problem=problem, sent=request.form, most_versions=MOST_VERSIONS,
-        accounts=len(new_assignment.students_with_accounts(request)),
+        accounts=len(new_assignment.students_with_accounts(request)), look=look, chosen=new_assignment.chosen_exercises(request),
     )  # fmt: skip
 
 
@@ -198,7 +241,13 @@ def assigning_page(request: Request) -> Response:
 def assignment_page(request: Request) -> Response:
     with request.site.store.reading() as connection:
         listed = assignment_here(request, connection)
-    return _page(request, listed, listed.publication or Publication())
+    return _page(request, listed, listed.publication or _usual_publication(listed))
+
+
+def _usual_publication(listed: ListedAssignment) -> Publication:
+    """Return the publication that the form proposes first: with the working time that the assignment states."""
+    minutes = minutes_of(text_in(listed.stated.get("duration") or {}, ""))
+    return Publication(minutes=minutes, takes_saved=minutes is not None)
 
 
 def _page(
