@@ -176,7 +176,9 @@ def store_new_decisions(connection: Connection, assignment_id: int, files: Decis
         if not one.student:
             known[one[:_STATED]] -= 1
             new_steps += [one] if known[one[:_STATED]] < 0 else []
-    decide(connection, assignment_id, new_steps)
+    gone = [one for one in remembered if known[one[:_STATED]] > 0 and one.kind != WITHDRAWN]
+    taken_back = [step._replace(kind=WITHDRAWN, points=None, reason="") for step in gone]
+    decide(connection, assignment_id, [*taken_back, *new_steps])
     was = _by_answer(one for one in remembered if one.student)
     now = _by_answer(one._replace(line=0, location="") for one in files.lines if one.student)
     decisions = read_decisions(connection, assignment_id)
@@ -190,7 +192,7 @@ def store_new_decisions(connection: Connection, assignment_id: int, files: Decis
         for one in now.get(on, ()):
             _store_decision(connection, assignment_id, one)
     remember_written(connection, assignment_id, files)
-    return len(changed) + len(new_steps)
+    return len(changed) + len(new_steps) + len(gone)
 
 
 def remember_written(connection: Connection, assignment_id: int, files: DecisionFiles) -> None:

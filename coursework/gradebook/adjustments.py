@@ -200,7 +200,7 @@ class Adjustments:
     def _weighted(self, graded: Graded) -> Graded:
         if not any(graded.exercise == name for name, _ in (*self.weights, *self.statuses)):
             return graded
-        lines = {}
+        lines, settled = {}, graded.settled
         for part, line in graded.lines.items():
             question = graded.exercise, part
             if (weight := self.weights.get(question)) is not None and line.out_of:
@@ -208,8 +208,9 @@ class Adjustments:
                 line = line._replace(points=round(points, 9), out_of=weight)
             if (status := self.statuses.get(question)) in (NEUTRAL, BONUS):
                 line = _counting_as(line, status)
+                settled = (*settled, part) if status == NEUTRAL else settled  # nothing waits in it
             lines[part] = line
-        return graded._replace(lines=lines)
+        return graded._replace(lines=lines, settled=settled)
 
     def _spare(self, adjusted: list[Graded], issued: Issued) -> None:
         """Leave questions out for those whose mark rises by it, beginning with the one that costs most."""
@@ -242,7 +243,7 @@ class Adjustments:
                     continue
                 points, out_of = rest, rest_out_of
                 lines = {**adjusted[k].lines, part: _counting_as(line, NEUTRAL)}
-                adjusted[k] = adjusted[k]._replace(lines=lines)
+                adjusted[k] = adjusted[k]._replace(lines=lines, settled=(*adjusted[k].settled, part))
 
 
 def _counting_as(line: Mark, status: str) -> Mark:

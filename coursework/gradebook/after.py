@@ -226,7 +226,14 @@ class Exam:
         drawn = drawn_questions(self.course, self.issued)
         found = groups(self.machine, self.measures, self.questions, drawn)
         waits = ((group, tuple(one for one in group.members if not self._is_decided(one))) for group in found)
-        return [(group, members) for group, members in waits if members and group.why not in SHOWN_ON_REQUEST]
+        statuses = self.decisions.adjustments.statuses
+        return [
+            (group, members)
+            for group, members in waits
+            if members
+            and group.why not in SHOWN_ON_REQUEST
+            and statuses.get((group.exercise, group.part)) != NEUTRAL
+        ]
 
     def _is_decided(self, answer: AnswerToReview) -> bool:
         return self.decisions.standing(answer.sheet, answer.mark) is not None

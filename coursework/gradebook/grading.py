@@ -284,7 +284,7 @@ def _write_decisions(
     if files.path is not None and (rows or replaced is not None):
         table = tables.open(files.path.name, files.columns)
         for row in rows:
-            table.write(row)
+            table.write({**dict.fromkeys(files.columns, ""), **row})
 
 
 def _remove_earlier_files(out: Path) -> None:

@@ -9,11 +9,11 @@ from tables import each_row
 
 import coursework
 from coursework.database.current_marks import graded
-from coursework.database.decisions import decide, history
+from coursework.database.decisions import decide, history, store_new_decisions
 from coursework.database.marking import mark_new
 from coursework.database.tables import decision
 from coursework.errors import BadInput, UnknownName
-from coursework.gradebook.decisions import Decision
+from coursework.gradebook.decisions import DECISIONS_FILE, Decision, DecisionFiles
 
 PLACE = Decision(BEN, "crank_pin", "1", "x", "accepted")
 
@@ -133,3 +133,28 @@ def test_the_history_of_an_answer_has_every_mark_and_who(store, number):
     ]
     assert (found[0].kind, found[0].verdict, found[0].answer) == ("marked", "unreadable", "somewhere")
     assert found == sorted(found, key=lambda one: one.made)
+
+
+def test_steps_come_from_a_file_once_and_go_with_their_line(course, store, number, tmp_path):
+    path = tmp_path / DECISIONS_FILE
+    header = "student,exercise,seed,part,answer,kind,points,out_of,reason,by,date"
+    weight, neutral = ",crank_pin,,y,,weight,7,,,Prof. Roe,2026-12-04", ",crank_pin,,x,,neutral,,,,Prof. Roe,"
+
+    def taken_in(*lines):
+        path.write_text("\n".join((header, *lines)) + "\n", "utf-8")
+        with store.begin() as connection:
+            return store_new_decisions(connection, number, DecisionFiles(tmp_path))
+
+    assert [taken_in(weight, neutral), taken_in(weight, neutral)] == [2, 0]
+    assert (line(store, number, part="y").out_of, line(store, number).out_of) == (7, 0)
+    assert [taken_in(weight), line(store, number).out_of > 0, line(store, number, part="y").out_of] == [
+        1,
+        True,
+        7,
+    ]
+    say(store, number, [PLACE._replace(student="", seed="")], "neutral_if_hurt", None, "on the site")
+    assert (line(store, number).out_of, line(store, number, ANA).out_of > 0) == (0, True)
+    with pytest.raises(BadInput):
+        say(store, number, [PLACE._replace(student="", seed="")], "weight", -1, "")
+    with pytest.raises(UnknownName):  # of one student there is no weight
+        say(store, number, [PLACE], "weight", 2, "")

@@ -132,6 +132,14 @@ def test_steps_in_a_file_last_and_marks_with_open_answers_are_provisional(small_
         assert "provisional" not in table(summary)[0]
     assert table(tmp_path / "marks" / "decisions.csv")[-1]["by"] == "Mme Roy"
     assert {row["mark_now"] for row in table(tmp_path / "marks" / "changes.csv")} == {"12.5", "20"}
+    # A mark edited by hand is noted beside the steps.
+    text = (tmp_path / "marks" / "marks.csv").read_text("utf-8-sig")
+    (tmp_path / "marks" / "marks.csv").write_text(text.replace("partial,3,6", "partial,6,6"), "utf-8")
+    again = ["--course", course.folder.root, "grade", "--from", tmp_path / "marks" / "marks.csv"]
+    assert run(list(map(str, [*again, "--issued", papers, "--no-feedback"]))) == 0
+    assert table(summary)[0]["mark"] == "20"
+    kinds = [row["kind"] for row in table(tmp_path / "marks" / "decisions.csv")]
+    assert kinds == ["given", "weight", "edited"]
     (tmp_path / "marks" / "decisions.csv").unlink()
     grade(course, papers, answers)
     ask = ["gradebook", "moodle", tmp_path / "marks", "--item", "ds2", "--out", tmp_path / "book.xml"]
