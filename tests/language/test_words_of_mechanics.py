@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import re
+import tomllib
+from collections.abc import Iterator
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -81,6 +83,31 @@ def readable(file: Path) -> str:
     text = re.sub(r"^## (\w+|mistake \w+)$", "", text, flags=re.MULTILINE)
     text = re.sub(r"^\w+ = \[.*?\]", "", text, flags=re.MULTILINE | re.DOTALL)
     return re.sub(r"^\w+ = ", "", text, flags=re.MULTILINE)
+
+
+def sentences(value: object, lang: str) -> Iterator[str]:
+    """Every text of a table of the book in a language; a pair is a word that leads to another, and may be banned."""
+    if isinstance(value, dict):
+        for key, inner in value.items():
+            if key == lang and isinstance(inner, str):
+                yield inner
+            else:
+                yield from sentences(inner, lang)
+    elif isinstance(value, list):
+        for inner in value:
+            yield from sentences(inner, lang)
+
+
+def test_the_tables_of_the_book_use_the_same_names():
+    told, read = [], 0
+    for file in (ROOT / "exercises/book").glob("*.toml"):
+        table = tomllib.loads(file.read_text("utf-8"))
+        for lang in BANNED:
+            texts_of_table = list(sentences(table, lang))
+            told += [f"{file.name}: {slip}" for text in texts_of_table for slip in slips(lang, text)]
+            read += len(texts_of_table)
+    assert not told, "\n".join(told)
+    assert read > 500
 
 
 def test_slips_would_be_found():
