@@ -191,7 +191,7 @@ def fillings(site: Filled) -> dict[str, Filling]:
     )
     anybodys = (
         "/", "/service-worker.js", "/offline", "/accessibility", "/language", "/who", "/sign-in", "/sign-out", "/account", "/account/data", "/practice", "/progress",
-        "/progress/progress.json", "/assignments", "/desk", "/desk/issued", "/desk/people", "/desk/people/extra-time", "/desk/people/add", "/desk/people/add-staff", "/desk/audit",
+        "/progress/progress.json", "/assignments", "/desk", "/desk/semester", "/desk/semester.csv", "/desk/issued", "/desk/people", "/desk/people/extra-time", "/desk/people/add", "/desk/people/add-staff", "/desk/audit",
         "/desk/receipts", "/desk/lti", "/mechanisms", "/desk/assignments", "/desk/assignments/new",
     )  # fmt: skip
     of_class = (

@@ -26,6 +26,7 @@ from coursework.site.desk import (
     regrading,
     rejected_rows,
     scans,
+    semester_page,
     student_page,
 )
 from coursework.site.frame.arrivals import Arrivals
@@ -55,6 +56,7 @@ ROUTES: tuple[Route, ...] = (
     *people_page.ROUTES,
     *privacy.ROUTES,
     *overview.ROUTES,
+    *semester_page.ROUTES,
     *links_page.ROUTES,
     *connecting.ROUTES,
     *queue.ROUTES,

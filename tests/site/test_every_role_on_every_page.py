@@ -46,7 +46,7 @@ WHO = {
         f"/assignments/{{number:int}}{end}": (STUDENTS, None)
         for end in ("/read-back", "/feedback", "/receipts/{code}", "/receipts/{code}.{ending}", "/{file}")
     },
-    "/desk": (ASSISTANTS, None), "/desk/receipts": (ASSISTANTS, None),
+    "/desk": (ASSISTANTS, None), "/desk/semester": (ASSISTANTS, None), "/desk/semester.csv": (ASSISTANTS, None), "/desk/receipts": (ASSISTANTS, None),
     **{
         f"/desk/{{assignment:int}}{end}": (ASSISTANTS, None)
         for end in (

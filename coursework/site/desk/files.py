@@ -167,7 +167,7 @@ def _list(names: Sequence[str]) -> str:
 # -------------------------------------------------------------------------- out
 
 
-def _spreadsheet(request: Request) -> Spreadsheet:
+def spreadsheet_of(request: Request) -> Spreadsheet:
     """Return the spreadsheet format of tables: that of the query, or else that of the language."""
     decimal = request.query_params.get("decimal", "comma" if request.lang == "fr" else "point")
     return SPREADSHEETS.get(decimal, SPREADSHEETS["point"])
@@ -176,11 +176,11 @@ def _spreadsheet(request: Request) -> Spreadsheet:
 def _marks(request: Request, now: ClassState) -> bytes:
     submitted = any(graded.submitted for graded in now.graded.values())
     rows = (row for graded in now.graded.values() for row in marks_rows(graded))
-    return csv_file(rows, marks_columns(now.issued, submitted=submitted), _spreadsheet(request))
+    return csv_file(rows, marks_columns(now.issued, submitted=submitted), spreadsheet_of(request))
 
 
 def _summary(request: Request, now: ClassState) -> bytes:
-    return _summary_table(now, _spreadsheet(request))
+    return _summary_table(now, spreadsheet_of(request))
 
 
 def _summary_table(now: ClassState, spreadsheet: Spreadsheet = SPREADSHEETS["point"]) -> bytes:
@@ -191,7 +191,7 @@ def _summary_table(now: ClassState, spreadsheet: Spreadsheet = SPREADSHEETS["poi
 
 
 def _rejected(request: Request, now: ClassState) -> bytes:
-    return csv_file(rejected_rows(now.book.rejected), REJECTED_COLUMNS, _spreadsheet(request))
+    return csv_file(rejected_rows(now.book.rejected), REJECTED_COLUMNS, spreadsheet_of(request))
 
 
 def _shows(now: ClassState, student: str) -> bool:
@@ -208,7 +208,7 @@ def _decided(request: Request, now: ClassState) -> bytes:
     return csv_file(
         ({c: "" if row[c] is None else row[c] for c in _DECISIONS} for row in rows),
         _DECISIONS,
-        _spreadsheet(request),
+        spreadsheet_of(request),
     )
 
 

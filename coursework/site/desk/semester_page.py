@@ -1,0 +1,180 @@
+"""Marks of a semester on one page: all assignments that the user marks, their weights, and the weighted averages."""
+
+from __future__ import annotations
+
+import math
+from collections import Counter
+from collections.abc import Mapping, Sequence
+from typing import NamedTuple
+from urllib.parse import urlencode
+
+from sqlalchemy import Connection
+from starlette.responses import Response
+
+from coursework.database.areas import groups_known, students_within
+from coursework.database.class_state import ClassState
+from coursework.database.instructor_queries import AssignmentOverview, listed_assignments
+from coursework.database.permissions import Permission, group_key
+from coursework.errors import BadInput
+from coursework.gradebook import semester
+from coursework.gradebook.class_points import Scored
+from coursework.gradebook.columns import VERDICTS
+from coursework.gradebook.scale import mark_of
+from coursework.gradebook.semester import Assessed, SemesterLine
+from coursework.issuing.exam_columns import group_of
+from coursework.issuing.identity import identifies
+from coursework.issuing.students import folded
+from coursework.language.numbers import localise, typed_number
+from coursework.site.desk.class_cache import CLASS_GROUP, assignment_title, class_within
+from coursework.site.desk.files import spreadsheet_of
+from coursework.site.frame.paging import page_of
+from coursework.site.frame.requests import Request, Route
+from coursework.site.frame.responses import Download
+from coursework.system.tables import csv_file
+
+_WEIGHT, _ABSENT = "weight.", "absent"
+_MOST_WEIGHT = 1000.0
+
+
+class WeighedAssignment(NamedTuple):
+    """Assignment with its weight, as the form shows it."""
+
+    id: int
+    name: str
+    title: str
+    weight: str
+    is_hidden: bool = False  #: its names are hidden as long as an answer waits
+
+
+class SemesterTable(NamedTuple):
+    """Semester as the query states it."""
+
+    assignments: Sequence[WeighedAssignment]
+    read: Sequence[Assessed]
+    lines: Sequence[SemesterLine]
+    absence: str
+    groups: dict[str, str]
+    group: str
+
+
+def semester_page(request: Request) -> Response:
+    """Return the page of the semester."""
+    table = _table(request)
+    sign = "," if request.lang == "fr" else "."
+    lines = [*semester.rows(table.lines, table.read, table.absence, sign)]
+    averages = [semester.average(line, table.read, table.absence) for line in table.lines]
+    found = [float(average) for average in averages if average is not None]
+    page = page_of(request, lines, lambda row: f"{row['student']} {row['number']}")
+    often = Counter(one.title for one in table.assignments)
+    titles = {
+        one.name: one.title if often[one.title] == 1 else f"{one.title} ({one.name})"
+        for one in table.assignments
+    }
+    return request.render(
+        "site/instructor/semester", table=table, page=page, rows=page.rows, titles=titles, worths=semester.WORTH,
+        columns=semester.columns_of(table.lines, table.read), class_groups=table.groups, class_group=table.group,
+        status=lambda text: _status(request, titles, text), mean=localise(f"{sum(found) / len(found):.2f}", request.lang) if found else "", of=semester.OF, query=_query(request),
+        number=lambda cell: localise(f"{cell:.10g}", request.lang) if isinstance(cell, (int, float)) else cell,
+    )  # fmt: skip
+
+
+def _status(request: Request, titles: Mapping[str, str], text: str) -> str:
+    """Return a status in the words of the page: ``absent: Midterm``."""
+    words, colon = request.words["semester"]["results"], request.words["semester"]["colon"]
+    parts = [part.partition(": ") for part in text.split("; ")]
+    return "; ".join(
+        f"{words[status]}{colon} {', '.join(titles.get(name, name) for name in names.split(', '))}"
+        if names
+        else words[status]
+        for status, _, names in parts
+    )
+
+
+def semester_file(request: Request) -> Response:
+    """Return the semester as a table, as ``coursework semester`` writes it."""
+    table, spreadsheet = _table(request), spreadsheet_of(request)
+    rows = semester.rows(table.lines, table.read, table.absence, spreadsheet.decimal)
+    data = csv_file(rows, semester.columns_of(table.lines, table.read), spreadsheet)
+    return Download(data, "text/csv; charset=utf-8", "semester.csv")
+
+
+def _query(request: Request) -> str:
+    """Return the query without its page and search, for the file."""
+    return urlencode([item for item in request.query_params.multi_items() if item[0] not in ("page", "find")])
+
+
+def _table(request: Request) -> SemesterTable:
+    """Return the semester that the query states. Raises BadInput: a weight is no number."""
+    absence = request.query_params.get(_ABSENT, semester.WORTH[0])
+    group = group_key(request.query_params.get(CLASS_GROUP, ""))
+    with request.site.store.reading() as connection:
+        theirs = _assignments(request, connection)
+        groups = groups_known(connection)
+    assignments, read = [], []
+    for about, students in theirs:
+        weight = _weight(request, about)
+        now = class_within(request.site, about.id, students) if weight else None
+        is_hidden = now is not None and bool(now.codes)
+        text = localise(f"{weight:g}", request.lang) if weight else ""
+        title = assignment_title(about, request.lang)
+        assignments.append(WeighedAssignment(about.id, about.name, title, text, is_hidden))
+        if now is not None and not is_hidden:
+            read.append(_assessed(now, weight))
+    semester.check_names(read)
+    lines = semester.semester(read)
+    groups = {
+        key: name for key, name in groups.items() if any(group_key(line.group) == key for line in lines)
+    }
+    if group:
+        lines = [line for line in lines if group_key(line.group) == group]
+    absence = absence if absence in semester.WORTH else semester.WORTH[0]
+    return SemesterTable(assignments, read, lines, absence, groups, group)
+
+
+def _assignments(
+    request: Request, connection: Connection
+) -> list[tuple[AssignmentOverview, frozenset[str] | None]]:
+    """Return the assignments in which the user may read marks, the first issued first, with the students within
+    whom they may."""
+    found = []
+    for about in sorted(listed_assignments(connection), key=lambda about: about.id):
+        if request.user.may(Permission.MARKS_READ, about.id):
+            students = students_within(connection, request.user, about.id)
+            if students is None or students:
+                found.append((about, students))
+    return found
+
+
+def _weight(request: Request, about: AssignmentOverview) -> float:
+    """Return the weight of an assignment: as stated, 0 for none; before anything is stated, 1 for what was answered."""
+    params = request.query_params
+    if not any(name.startswith(_WEIGHT) for name in params):
+        return 1.0 if about.last is not None else 0.0
+    text = params.get(f"{_WEIGHT}{about.id}", "").strip()
+    weight = typed_number(text) if text else 0.0
+    if not (math.isfinite(weight) and 0 <= weight <= _MOST_WEIGHT):
+        raise BadInput(request.words["semester"]["no_weight"].format(text[:20]))
+    return weight
+
+
+def _assessed(now: ClassState, weight: float) -> Assessed:
+    """Return the marks of a class."""
+    scale = (now.adjusted.assignment or {}).get("mark")
+    scored = []
+    for student, result in now.results.items():
+        percent = 100 * result.counts / result.out_of if result.out_of else 0.0
+        mark = mark_of(now.adjusted, result.counts, result.out_of) if scale else ""
+        columns = now.issued.columns.get(student, {})
+        ids = tuple((title, value) for title, value in columns.items() if value and identifies(title))
+        answered = any(result.verdicts.get(verdict) for verdict in VERDICTS if verdict != "missing")
+        points = mark or ("0" if scale else f"{percent:.10g}")
+        scored.append(Scored(student, ids, points, "", answered, str(result.open or "")))
+    groups = {folded(s): group for s, cells in now.issued.columns.items() if (group := group_of(cells))}
+    handed_in = {folded(student): "" for student, one in now.site_submissions.items() if one.attempts}
+    return Assessed(now.about.name, weight, scored, float(scale["of"]) if scale else 100.0, groups, handed_in)
+
+
+ROUTES = (
+    Route("/desk/semester", semester_page, Permission.MARKS_READ),
+    Route("/desk/semester.csv", semester_file, Permission.MARKS_EXPORT),
+)
