@@ -216,6 +216,10 @@ def _formats() -> tuple[str, ...]:
     return FORMATS
 
 
+#: Short answers at the end of a book, by the place of its solutions.
+_ANSWERS = {"end": "all", "apart": "odd", "none": ""}
+
+
 @click.command()
 @lang_option
 @click.option(
@@ -266,7 +270,15 @@ def workbook(
     wanted = _numbers(chapters)
     writes(context, out)
     with progress_bar("reading", pieces_of(course)) as advance:
-        book = bound(course, lang, seed, chapters=wanted, solved=solutions == "end", advance=advance)
+        book = bound(
+            course,
+            lang,
+            seed,
+            chapters=wanted,
+            solved=solutions == "end",
+            answers=_ANSWERS[solutions],
+            advance=advance,
+        )
     written = list(files(course, book, formats, paper=paper, apart=solutions == "apart"))
     with progress_bar("writing", len(written)) as advance:
         notes = write_tree(out, written, advance, anew=overwrite)

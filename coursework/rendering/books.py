@@ -36,6 +36,8 @@ def typst_source(folders: Sequence[Path], book: Book, paper: str = "a4", *, apar
             exercise.handout.exercise: _exercise(env, exercise, "typ.j2") for exercise in book.exercises
         }
     }
+    names["exercise_numbers"] = _cited_exercises(book)
+    names["ladder"] = any(section.drills or section.judgements for section in book.sections)
     names["machines"] = _machines(book)
     names["index_entries"] = {*book.terms, *(entry for part in book.front for entry in part.terms)}
     names["pieces"] = partial(_typst_pieces, env, book)
@@ -45,6 +47,14 @@ def typst_source(folders: Sequence[Path], book: Book, paper: str = "a4", *, apar
     return render(
         env, "parts/page.typ.j2", names | {"bodies": [body], "printed": True, "heading": {"lang": book.lang}}
     )
+
+
+def _cited_exercises(book: Book) -> dict[str, str]:
+    """Return how paper names the exercises of the book, by their names."""
+    form = words(book.lang)["book"]["cited_exercise"]
+    return {
+        one.handout.exercise: str(form.format(one.number)).replace(" ", "\u00a0") for one in book.exercises
+    }
 
 
 def _machines(book: Book) -> list[tuple[str, list[BookExercise]]]:
@@ -201,6 +211,8 @@ def _page(env: Environment, book: Book, page: BookPage, names: Mapping[str, Any]
     if isinstance(page.of, LessonText):
         pieces = _html_pieces(env, book, page.of, names)
         more = {"lesson": page.of, "shown": pieces, "own": _own_exercises(book, page.of)}
+        more["section"] = next((one for one in book.sections if one.lesson is page.of), None)
+        more["exercise_numbers"] = _cited_exercises(book)
         return render(env, "book/lesson.html.j2", {**names, **more})
     if isinstance(page.of, BookExercise):
         sheet = page.of.handout

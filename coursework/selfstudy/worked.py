@@ -252,7 +252,7 @@ class WorkedExample(NotebookDisplay):
             f"\\\n   {letter}) {label}" if letter else f"\n   - {label}"
             for letter, label in offered(question)
         )
-        return f"{_named(question)}{cases}"
+        return f"{named_question(question)}{cases}"
 
     def _solution_text(self) -> str:
         """Return the part of the solution that is shown."""
@@ -337,7 +337,7 @@ class WorkedExample(NotebookDisplay):
         )
 
 
-def _named(question: Question) -> str:
+def named_question(question: Question) -> str:
     """Return a question with its unit, and its symbol where the words lack it."""
     prompt = " ".join(question.prompt.split())
     if not question.symbol:

@@ -69,7 +69,7 @@ class TablePiece:
 
     @property
     def is_long(self) -> bool:
-        """Whether it is set in two columns of a page."""
+        """True if it is set in two columns of a page."""
         return self.text.count("\n") > _LONG
 
 
@@ -156,6 +156,37 @@ class LessonText:
 
 
 @dataclass(frozen=True)
+class Drill:
+    """Question of two minutes: its number, its grade from 1 on, where it was drawn, its text and its answer (Markdown)."""
+
+    number: str
+    grade: int
+    exercise: str
+    seed: int
+    text: str
+    answer: str
+    quantity: str
+    values: Mapping[str, object]  #: what it gives, by name
+    result: float  #: what the answer says, with all digits
+
+    @property
+    def is_odd(self) -> bool:
+        """True if its number is odd, so that a students' book has its answer."""
+        return int(self.number.rpartition(".")[2]) % 2 == 1
+
+
+@dataclass(frozen=True)
+class Judgement:
+    """Sentence to be judged true or false: its number, and the reason of what it is (Markdown)."""
+
+    number: str
+    text: str
+    is_true: bool
+    reason: str
+    is_odd: bool  #: whether a students' book has its answer
+
+
+@dataclass(frozen=True)
 class SummaryCard:
     """Summary of a lesson: its formulas, each a number and lines of LaTeX; conditions, sign rules and traps, Markdown."""
 
@@ -187,6 +218,11 @@ class BookExercise:
     solution: AnswerSheet
     lessons: tuple[tuple[str, str], ...] = ()  #: names and titles of the lessons that teach it
 
+    @property
+    def is_odd(self) -> bool:
+        """True if its number is odd, so that a students' book has its answers."""
+        return int(self.number.rpartition(".")[2]) % 2 == 1
+
 
 @dataclass(frozen=True)
 class BookSection:
@@ -195,6 +231,8 @@ class BookSection:
     lesson: LessonText | None
     exercises: tuple[BookExercise, ...]
     title: str = ""  #: where there is no lesson
+    drills: tuple[Drill, ...] = ()
+    judgements: tuple[Judgement, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -234,7 +272,7 @@ class SymbolRow:
 
 @dataclass(frozen=True)
 class TitlePage:
-    """What the title page says besides the title; empty where nothing is stated."""
+    """Title page: author, edition and licence; empty where nothing is stated."""
 
     author: str = ""
     edition: str = ""
@@ -271,6 +309,7 @@ class Book:
     back: tuple[LessonText, ...] = ()  #: pages after the last one
     see: tuple[SeeEntry, ...] = ()
     machines: tuple[MachineEntry, ...] = ()
+    answers: str = ""  #: which short answers stand at its end: odd, all, or none
 
     @property
     def exercises(self) -> tuple[BookExercise, ...]:
@@ -279,6 +318,10 @@ class Book:
     @property
     def lessons(self) -> tuple[LessonText, ...]:
         return tuple(lesson for chapter in self.chapters for lesson in chapter.lessons)
+
+    @property
+    def sections(self) -> tuple[BookSection, ...]:
+        return tuple(section for chapter in self.chapters for section in chapter.sections)
 
     @property
     def terms(self) -> Mapping[str, tuple[str, ...]]:

@@ -15,11 +15,12 @@ from coursework.errors import BadCourse, BadInput
 from coursework.issuing.issuing import distinct_variants
 from coursework.language.words import words
 from coursework.selfstudy.workbook.concordance import entries_of, machine_entries, see_entries, with_entries
+from coursework.selfstudy.workbook.drills import drills_of, judgements_of
 from coursework.selfstudy.workbook.lessons import lesson_text
 from coursework.selfstudy.workbook.matter import matter_of, title_page
 from coursework.selfstudy.workbook.summaries import summary_of
 from coursework.sheets.answer_sheet import answer_sheet
-from coursework.sheets.book import Book, BookChapter, BookExercise, BookSection
+from coursework.sheets.book import Book, BookChapter, BookExercise, BookSection, Drill, Judgement
 from coursework.sheets.handout import handout
 
 _FAR = 500_000  #: seeds away from those of a class and of self-study: a book prints its solutions
@@ -33,6 +34,7 @@ def bound(
     *,
     chapters: Sequence[int] = (),
     solved: bool = True,
+    answers: str = "",
     advance: Callable[[], object] = lambda: None,
 ) -> Book:
     """Return the book of a course.
@@ -49,6 +51,8 @@ def bound(
         The numbers of those that are wanted; all unless told.
     solved
         Whether the solutions stand at its end.
+    answers
+        Which short answers stand at its end: ``odd``, ``all``, or none.
     advance
         Called after each lesson and exercise.
 
@@ -88,6 +92,7 @@ def bound(
         back,
         see_entries(folder, lang),
         machine_entries(folder, lang),
+        answers,
     )
 
 
@@ -125,7 +130,12 @@ def _chapter(
             exercises.append(_practised(course, name, lang, seed, f"{chapter.number}.{count}"))
             advance()
         title = "" if lesson else placed.titles.get(lang, "")
-        sections.append(BookSection(lesson, tuple(exercises), title))
+        drills: tuple[Drill, ...] = ()
+        judgements: tuple[Judgement, ...] = ()
+        if lesson and course.folder.book_place.is_dir():
+            drills = drills_of(course, placed.exercises, lesson.number, lang, seed)
+            judgements = judgements_of(course.folder, lesson)
+        sections.append(BookSection(lesson, tuple(exercises), title, drills, judgements))
     lessons = [section.lesson for section in sections if section.lesson]
     cards = tuple(filter(None, (summary_of(course.folder, lesson) for lesson in lessons)))
     return BookChapter(chapter.number, chapter.title(lang), tuple(sections), cards)

@@ -1,0 +1,259 @@
+"""Drills of a lesson: questions of two minutes, drawn from variants of its exercises.
+
+A drill asks one quantity and gives what its formula takes: one step back, two steps, or the data alone. The answer is computed
+from the numbers as printed, so that who puts them in finds the digits of the book.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
+from itertools import chain, zip_longest
+from string import ascii_uppercase
+from typing import Any
+
+from coursework.course.course import Course
+from coursework.course.folder import Folder
+from coursework.course.variant import Variant
+from coursework.errors import BadCourse, CourseworkError
+from coursework.issuing.issuing import distinct_variants
+from coursework.language.numbers import unit_latex
+from coursework.model import Part
+from coursework.quantities.formula_latex import number_latex
+from coursework.rendering.views import given_formula, given_words
+from coursework.selfstudy.worked import named_question
+from coursework.sheets.book import Drill, Judgement, LessonText
+from coursework.sheets.following import needs
+from coursework.sheets.handout import handout
+
+GRADES = (4, 3, 3)  #: drills of each grade
+_FAR, _APART = 700_000, 1_000  #: seeds away from all others, and between two books
+_VARIANTS = 6  #: of each exercise from which they are drawn
+_SHORT = (
+    "number",
+    "integer",
+    "angle",
+    "choice",
+    "choices",
+    "direction",
+    "equation",
+    "vector",
+    "twist",
+    "wrench",
+    "matrix",
+    "complex",
+)
+_MOST = 4  #: drills of a grade that ask the same
+_GIVEN = 6  #: numbers that a drill gives at most
+_STEPS = (0, 1, 2, 4)  #: formulas that a drill of each grade takes at most
+_DIGITS = 4  #: of a number that is given though it is computed
+_LOST = 0.01  #: how far its rounding may move the answer
+_MEASURED = ("number", "integer", "angle")
+
+
+def drills_of(
+    course: Course[Any],
+    exercises: Sequence[str],
+    lesson: int,
+    lang: str,
+    seed: int,
+    grades: Sequence[int] = GRADES,
+) -> tuple[Drill, ...]:
+    """Return the drills of a lesson, the easiest first.
+
+    Parameters
+    ----------
+    course
+        An open course.
+    exercises
+        The names of those from which they are drawn.
+    lesson
+        The number of the lesson, with which theirs begin.
+    lang
+        Language of the drills.
+    seed
+        Which book.
+    grades
+        How many of each grade.
+    """
+    drawn = {name: _variants(course, name, lang, seed) for name in exercises}
+    posed: set[tuple[str, str]] = set()
+    found: list[list[Drill]] = [[] for _ in grades]
+    for grade, count in enumerate(grades, 1):
+        _fill(found[grade - 1], drawn, grade, count, posed)
+    for grade in (2, 1, 3):  # a lesson whose formulas are short has more of the others
+        _fill(
+            found[grade - 1], drawn, grade, len(found[grade - 1]) + sum(grades) - sum(map(len, found)), posed
+        )
+    in_order = enumerate(chain.from_iterable(found), 1)
+    return tuple(replace(drill, number=f"{lesson}.{k}") for k, drill in in_order)
+
+
+def judgements_of(folder: Folder, lesson: LessonText) -> tuple[Judgement, ...]:
+    """Return the sentences of a lesson to be judged true or false, as ``exercises/book/true_or_false.toml`` states them.
+
+    Raises
+    ------
+    BadCourse
+        One has no text, no truth or no reason in the language.
+    """
+    stated = folder.book_table("true_or_false").get(lesson.name, {})
+    try:
+        return tuple(
+            Judgement(
+                f"{lesson.number}.{ascii_uppercase[k]}",
+                row[lesson.lang],
+                bool(row["is_true"]),
+                row["why"][lesson.lang],
+                k % 2 == 0,
+            )
+            for k, row in enumerate(stated.get("sentences", ()))
+        )
+    except (KeyError, TypeError) as fault:
+        raise BadCourse(
+            f"exercises/book/true_or_false.toml: {lesson.name}: a sentence has no {fault}"
+        ) from fault
+
+
+def _variants(course: Course[Any], name: str, lang: str, seed: int) -> Sequence[Variant]:
+    variants = distinct_variants(course[name], _FAR + _APART * seed, _VARIANTS, lang)
+    sheet = handout(variants[0])
+    # What is measured on a drawing takes longer than two minutes.
+    drawn = any(q.is_open or q.kind not in _SHORT or q.box == "millimetre" for q in sheet.questions)
+    return () if drawn else variants
+
+
+def _fill(
+    found: list[Drill],
+    drawn: Mapping[str, Sequence[Variant]],
+    grade: int,
+    count: int,
+    posed: set[tuple[str, str]],
+) -> None:
+    """Add drills of a grade until there are so many, or no question is left."""
+    for variant, part in _in_turn(drawn, grade):
+        if len(found) >= count:
+            return
+        if (
+            sum(one.quantity == part.quantity and one.exercise == variant.exercise.name for one in found)
+            >= _MOST
+        ):
+            continue
+        drill = _drill(variant, part, grade, "")
+        if drill and not {(drill.exercise, drill.answer), ("", drill.text)} & posed:
+            posed |= {(drill.exercise, drill.answer), ("", drill.text)}
+            found.append(drill)
+
+
+def _in_turn(drawn: Mapping[str, Sequence[Variant]], grade: int) -> Iterator[tuple[Variant, Part]]:
+    """Yield questions of each exercise in turn, of another variant each time; a grade begins with others than the one before."""
+    rows = []
+    for variants in drawn.values():
+        asked = [[p for p in variant.parts if p.kind in _MEASURED and not p.judge] for variant in variants]
+        most = max(map(len, asked), default=0)
+        first = 2 * (grade - 1)
+        pairs = (
+            (
+                variants[k % len(variants)],
+                asked[k % len(variants)][(k + shift) % len(asked[k % len(variants)])],
+            )
+            for shift in range(most)
+            for k in range(first, first + len(variants))
+            if asked[k % len(variants)]
+        )
+        rows.append(list(pairs))
+    yield from (pair for pair in chain.from_iterable(zip_longest(*rows)) if pair is not None)
+
+
+def _drill(variant: Variant, part: Part, grade: int, number: str) -> Drill | None:
+    """Return a drill, or None where a question makes none of this grade."""
+    try:
+        names = _data(variant, part.quantity, grade)
+        if not names or len(names) > _GIVEN:
+            return None
+        values = {name: _as_printed(variant, name) for name in names}
+        graph = variant.exercise.solution.graph.textbook
+        answer = graph.evaluate([part.quantity], values)[part.quantity]
+        exact = variant.quantities([part.quantity])[part.quantity]
+        if not _is_fit(answer, exact):
+            return None
+        given = ", ".join(_given(variant, name, value) for name, value in values.items())
+    except (CourseworkError, ArithmeticError, TypeError, ValueError):
+        return None
+    question = next(q for q in handout(variant).questions if q.id == part.id)
+    unit = variant.exercise.units.get(part.quantity, "1")
+    told = f"${number_latex(answer, '1', _DIGITS)}{unit_latex(unit)}$"
+    return Drill(
+        number,
+        grade,
+        variant.exercise.name,
+        variant.seed,
+        f"{given}. {named_question(question)}",
+        told,
+        part.quantity,
+        values,
+        float(answer),
+    )
+
+
+def _data(variant: Variant, quantity: str, grade: int) -> list[str]:
+    """Return the names of what a drill of a grade gives; nothing where none leads to the quantity in so many formulas.
+
+    A sheet names what is given and what is asked: nothing else can be given in a drill.
+    """
+    if quantity in variant.used:
+        return []
+    steps: set[str] = {quantity}
+    names = _known(variant, [quantity], steps)
+    while len(steps) <= _STEPS[-1]:
+        if _STEPS[grade - 1] < len(steps) <= _STEPS[grade]:
+            return list(names)
+        computed = [name for name in names if name not in variant.used]
+        if not computed:
+            break
+        steps |= {*computed}
+        data = [name for name in names if name in variant.used]
+        names = tuple(dict.fromkeys((*data, *_known(variant, computed, steps))))
+    return []
+
+
+def _known(variant: Variant, quantities: Sequence[str], steps: set[str]) -> tuple[str, ...]:
+    """Return what the sheet names of the needs of some quantities; what it does not name is seen through, as further steps."""
+    asked = {part.quantity for part in variant.parts}
+    names: dict[str, None] = {}
+    for quantity in quantities:
+        for name in needs(variant, quantity):
+            if name in variant.used or name in asked:
+                names.setdefault(name)
+            else:
+                steps.add(name)
+                names |= dict.fromkeys(_known(variant, [name], steps))
+    return tuple(names)
+
+
+def _as_printed(variant: Variant, name: str) -> Any:
+    """Return a value as the drill prints it."""
+    if name in variant.used:
+        return variant.used[name]
+    value = variant.quantities([name])[name]
+    if isinstance(value, bool) or not isinstance(value, (int, float)):
+        raise TypeError(name)
+    return float(f"{value:.{_DIGITS}g}")
+
+
+def _is_fit(answer: Any, exact: Any) -> bool:
+    if isinstance(answer, (bool, complex, str)) or not math.isfinite(answer):
+        return False
+    return abs(answer - exact) <= _LOST * abs(exact) and abs(exact) > 1e-9
+
+
+def _given(variant: Variant, name: str, value: Any) -> str:
+    if name in variant.used:
+        given = next((g for g in handout(variant).given if g.name == name), None)
+        if given is None:  # it is drawn, and stands on no sheet
+            raise ValueError(name)
+        return f"${given_formula(given)}$" if given.is_number else given_words(given, variant.lang)
+    unit = variant.exercise.units.get(name, "1")
+    symbol = variant.exercise.solution_symbol(name)
+    return f"${symbol} = {number_latex(value, '1', _DIGITS)}{unit_latex(unit)}$"

@@ -1,0 +1,110 @@
+"""Drills of a lesson: each can be worked out again from what it gives, in three grades, and nothing of a class is in it."""
+
+from __future__ import annotations
+
+import cmath
+import math
+
+import pytest
+from pdf_text import page_texts
+
+import coursework
+from coursework.errors import BadCourse
+from coursework.rendering.renderer import renderer_of
+from coursework.selfstudy.workbook.binding import bound
+from coursework.selfstudy.workbook.drills import GRADES, drills_of, judgements_of
+from coursework.sheets.book import LessonText
+
+
+def turned(r, theta):
+    """Return a vector of the plane; the angle is in degrees."""
+    return cmath.rect(r, math.radians(theta))
+
+
+def omega3_of_coupler(v):
+    """Return the coupler's rate: the velocity of B is perpendicular to CB."""
+    arm = turned(v["r2"], v["theta2"]) + turned(v["r3"], v["theta3"]) - v["r1"]
+    along_a = 1j * v["omega2"] * turned(v["r2"], v["theta2"])
+    along_ba = 1j * turned(v["r3"], v["theta3"])
+    return -(along_a * arm.conjugate()).real / (along_ba * arm.conjugate()).real
+
+
+def test_drills_are_answered_from_what_they_give(course):
+    """By another way than the solution's: a vector equation in place of its closed form."""
+    drills = drills_of(course, ("coupler_curve",), 5, "en", 0)
+    assert len(drills) == sum(GRADES)
+    assert [drill.number for drill in drills] == [f"5.{k}" for k in range(1, 11)]
+    assert [drill.grade for drill in drills] == sorted(drill.grade for drill in drills)
+    checked = 0
+    for drill in drills:
+        if drill.quantity == "omega3" and "r1" in drill.values:
+            assert drill.result == pytest.approx(omega3_of_coupler(drill.values), rel=1e-3)
+            checked += 1
+        elif drill.quantity in ("xP", "yP") and "theta3" in drill.values:
+            v = drill.values
+            P = turned(v["r2"], v["theta2"]) + turned(v["AP"], v["theta3"] + v["beta"])
+            assert drill.result == pytest.approx(P.real if drill.quantity == "xP" else P.imag, rel=1e-3)
+            checked += 1
+    assert checked >= 5
+
+
+def test_another_book_has_other_drills_and_both_languages_have_the_same(course):
+    first, again = (drills_of(course, ("grashof",), 3, "en", 0) for _ in range(2))
+    other, french = drills_of(course, ("grashof",), 3, "en", 1), drills_of(course, ("grashof",), 3, "fr", 0)
+    assert first == again
+    assert {drill.text for drill in first}.isdisjoint(drill.text for drill in other)
+    assert [drill.values for drill in first] == [drill.values for drill in french]
+    assert all(drill.seed >= 700_000 for drill in first)
+
+
+def test_every_lesson_has_sentences_to_judge_in_every_language(course):
+    told = {
+        lang: [
+            [one.is_true for one in judgements_of(course.folder, LessonText(name, 1, lang, "", (), ()))]
+            for name in course.folder.lessons
+        ]
+        for lang in course.folder.languages
+    }
+    assert told["en"] == told["fr"]
+    assert all(set(truths) == {True, False} for truths in told["en"])
+
+
+@pytest.fixture
+def small(small_course):
+    settings = small_course / "exercises/course.toml"
+    chapters = '\n[[chapters]]\ntitle = { en = "Pins" }\n[[chapters.sections]]\nlesson = "rods"\nexercises = ["crank_pin"]\n'
+    settings.write_text(settings.read_text("utf-8") + chapters, "utf-8")
+    (small_course / "exercises/lessons").mkdir()
+    (small_course / "exercises/lessons/rods.en.md").write_text("# Rods\n\n## 1. One\n\nA rod.\n", "utf-8")
+    (small_course / "exercises/book").mkdir()
+    sentence = '{ en = "Rods bend.", is_true = false, why = { en = "They are rigid." } }'
+    second = '{ en = "Pins turn.", is_true = true, why = { en = "They are round." } }'
+    (small_course / "exercises/book/true_or_false.toml").write_text(
+        f"[rods]\nsentences = [{sentence}, {second}]\n", "utf-8"
+    )
+    return small_course
+
+
+def test_a_students_volume_has_odd_answers_and_the_teachers_all(small):
+    course = coursework.open_course(small)
+    renderer = renderer_of(course.folder)
+    book = bound(course, "en", solved=False, answers="odd")
+    assert book.sections[0].drills
+    told, teacher = (
+        "".join("".join(page_texts(renderer.book_pdf(book, apart=apart))).split()) for apart in (False, True)
+    )
+    assert "Answerstooddnumbers" in told
+    assert "Theyarerigid." in told
+    assert "Theyareround." not in told
+    assert "Theyareround." in teacher
+    without = "".join("".join(page_texts(renderer.book_pdf(bound(course, "en", solved=False)))).split())
+    assert "Theyarerigid." not in without
+
+
+def test_a_sentence_without_a_reason_is_told(small):
+    (small / "exercises/book/true_or_false.toml").write_text(
+        '[rods]\nsentences = [{ en = "Rods bend.", is_true = false }]\n', "utf-8"
+    )
+    folder = coursework.open_course(small).folder
+    with pytest.raises(BadCourse, match=r"true_or_false\.toml: rods: a sentence has no 'why'"):
+        judgements_of(folder, LessonText("rods", 1, "en", "", (), ()))
