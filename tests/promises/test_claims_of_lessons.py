@@ -372,6 +372,25 @@ def a_crank_rocker_that_transmits_well_returns_no_quicker(course):
     assert 1.31 < (180 + apart) / (180 - apart) < 1.325
 
 
+@claim("quick_returns", "if $r_1^2 + r_2^2 = r_3^2 + r_4^2$", "si $r_1^2 + r_2^2 = r_3^2 + r_4^2$")
+def a_crank_rocker_whose_squares_agree_takes_equal_times(course):
+    turn = np.arange(0.125, 360.0, 0.25)
+    for r4, advance in ((np.sqrt(200.0**2 + 60.0**2 - 180.0**2), 180.0), (140.0, 187.75)):
+        asked = {
+            "r1": 200.0,
+            "r2": 60.0,
+            "r3": 180.0,
+            "r4": r4,
+            "omega2": 10.0,
+            "alpha2": 0.0,
+            "mode": "open",
+        }
+        speed = course["four_bar_motion"].solve(**asked, theta2=turn, only="omega4")["omega4"]
+        assert changes_of_sign(speed) == 2
+        longer = max((speed > 0).mean(), (speed < 0).mean())
+        assert abs(360 * longer - advance) < 0.3
+
+
 @claim(
     "quick_returns",
     "over more than half of it the speed stays within a tenth",
