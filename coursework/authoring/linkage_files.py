@@ -131,7 +131,7 @@ def report(exercise: CourseExercise[Any], made: CompiledLinkage, seed: int) -> l
     given = dict(exercise.variant(seed).given)
     rows: list[tuple[str, Any]] = [
         (Message("degrees of freedom"), linkage.mobility),
-        (Message("moving bodies"), ", ".join(linkage.bodies)),
+        (Message("moving bodies"), ", ".join([*linkage.bodies, *filter(None, [linkage.drive.rod])])),
         (Message("groups, in order of assembly"), "; ".join(map(_group, formulas.groups)) or "-"),
     ]
     if not linkage.gears:
@@ -188,7 +188,12 @@ def _group(group: Any) -> str:
 def _grashof(made: CompiledLinkage, exercise: CourseExercise[Any], given: Mapping[str, Any]) -> str:
     """Return the type of a mechanism that is a four-bar linkage; '' for any other."""
     linkage, groups = made.linkage, made.formulas.groups
-    if len(groups) != 1 or not isinstance(groups[0], Dyad) or groups[0].kind != "RRR":
+    if (
+        linkage.drive.kind != "turn"
+        or len(groups) != 1
+        or not isinstance(groups[0], Dyad)
+        or groups[0].kind != "RRR"
+    ):
         return ""
     dyad = groups[0]
     points = [str(dyad.outer_p), str(dyad.outer_q)]

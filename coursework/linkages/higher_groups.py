@@ -201,7 +201,7 @@ class HigherGroupWriter(LoopWriter):
         if len(known) > 1:
             first, second = known[:2]
             own = value_of(self.local(second, body), values) - value_of(self.local(first, body), values)
-            return float(np.angle((places[second] - places[first]) / own))
+            return float(np.angle((places[second] - places[first]) / own)) if own else None
         slide = next((s for s in linkage.slides.values() if s.on == body and s.at in places), None)
         if slide is None or not known:
             return None

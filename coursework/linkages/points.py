@@ -535,7 +535,12 @@ def middle(entry: GivenEntry) -> float:
 
 def middle_value(vector: Plane, linkage: LinkageFile) -> complex:
     """Return a vector of given quantities, each in the middle of its range, as a number."""
-    return value_of(vector, {n: middle(entry) for n, entry in linkage.given.items()})
+    try:
+        return value_of(vector, {n: middle(entry) for n, entry in linkage.given.items()})
+    except (ArithmeticError, ValueError):
+        names = ", ".join(names_in(vector.complex))
+        stated = Message("a place by {names} has no value in the middle of their ranges", names=names)
+        raise linkage.refused(("bodies",), stated) from None
 
 
 def value_of(vector: Plane, values: Mapping[str, float]) -> complex:

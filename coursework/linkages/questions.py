@@ -285,7 +285,7 @@ class QuestionWriter:
     def _equations(self, value: Any) -> None:
         forms = ("x", "y", "complex", "x_dot", "y_dot", "complex_dot")
         wanted = ["x", "y"] if value is True else value
-        if not isinstance(wanted, list) or not wanted or not {*wanted} <= {*forms}:
+        if not isinstance(wanted, list) or not wanted or any(form not in forms for form in wanted):
             raise self.linkage.refused(
                 ("ask", "equations"),
                 Message(

@@ -104,6 +104,8 @@ LENGTHS = [
     ("tipper", "instant_centres =", 'polygon = ["velocity"]\ninstant_centres =', 26, "a given angle drives"),
     ("piston_engine", "mobility = true", "advantage = true", 21, "asked where a given angle turns a body"),
     ("piston_engine", 'on = "ground", through = ["0 mm", "e"]', 'on = "2", through = ["0 mm", "e"]', 17, "distance along the slide, which follows"),
+    ("klann_leg", 'EF = "57.7 mm"', 'EF = "1 mm"', 17, "EG, EF, FG has no value"),
+    ("slider_crank", 'equations = ["x", "y", "complex"]', "equations = [{}]", 21, "a list of x, y, complex"),
     ("digger_arm", 'near = { length = "346 mm"', 'near = { angle = "20 deg"', 16, "length ="),
 ]  # fmt: skip
 
