@@ -242,6 +242,16 @@ def _statement(writer: SentenceWriter, questions: Sequence[LinkageQuestion]) -> 
     if linkage.loads:
         motion.append(sentence("statement", "forces"))
     drawing = [sentence("statement", "drawing")] if any(q.key == "drawn_pole" for q in questions) else []
+    if drawing:
+        guides = [
+            (g.inner.at, g.q)
+            for g in formulas.groups
+            if isinstance(g, Dyad) and isinstance(g.inner, SlideEntry)
+        ]
+        drawing += [
+            sentence("statement", "drawing_guide", {"B": p, "image": p.lower(), "guide": g})
+            for p, g in guides
+        ]
     return "\n\n".join(" ".join(part) for part in (bodies, joints, assembled, motion, drawing) if part)
 
 

@@ -70,17 +70,26 @@ class PolygonWriter:
             )
         yield from self._carried(self.linkage.driver, drawn)
         for group in self.formulas.groups:
-            if not isinstance(group, Dyad) or group.kind not in ("RRR", "RRP"):
+            inner = group.inner if isinstance(group, Dyad) else ""
+            if (
+                isinstance(group, Dyad)
+                and isinstance(inner, SlideEntry)
+                and group.kind == "RPR"
+                and inner.at == group.outer_p
+            ):
+                yield self._guided(group, inner)
+            elif not isinstance(group, Dyad) or group.kind not in ("RRR", "RRP"):
                 raise self.linkage.refused(
                     ("ask", "polygon"),
-                    Message("polygons are drawn of pairs of bars, and of sliders on fixed guides"),
+                    Message(
+                        "polygons are drawn of pairs of bars, of sliders on fixed guides, and of guides about a joint"
+                    ),
                 )
-            inner, start = str(group.inner), str(group.outer_p)
-            if isinstance(group.outer_q, SlideEntry):
+            elif isinstance(group.outer_q, SlideEntry):
                 yield self._slider(group, group.outer_q)
             else:
-                yield self._bars(group, start, inner, str(group.outer_q))
-            drawn.add(inner)
+                yield self._bars(group, str(group.outer_p), str(inner), str(group.outer_q))
+            drawn.add(str(inner) if isinstance(inner, str) else inner.at)
             for body in group.bodies:
                 yield from self._carried(body, drawn)
 
@@ -98,11 +107,13 @@ class PolygonWriter:
             drawn.add(point)
             yield self._about(body, start, point, "")
 
-    def _about(self, body: str, start: str, end: str, primes: str) -> list[DrawnSide]:
+    def _about(
+        self, body: str, start: str, end: str, primes: str, image: str = "", of: str = ""
+    ) -> list[DrawnSide]:
         """Return the sides from the image of a point of a body to that of another; without ``primes`` they are known, since the motion
-        of the body is."""
-        vector, line, of = self._vector(start, end), start + end, self._of(start, end)
-        begin, image = self._image(start), end.lower()
+        of the body is. ``image`` and ``of`` are those of the end, unless a point of the body that lies there has its own."""
+        vector, line, of = self._vector(start, end), start + end, of or self._of(start, end)
+        begin, image = self._image(start), image or end.lower()
         omega, alpha = self.formulas.omega(body), self.formulas.alpha(body)
         rate, gain = self.formulas.symbol(omega), self.formulas.symbol(alpha) if alpha != "0" else ""
         if self.kind == "velocity":
@@ -147,6 +158,31 @@ class PolygonWriter:
         if self.kind == "velocity":
             return [*first, *second]
         return [first[0], second[0], first[1], second[1]]
+
+    def _guided(self, group: Dyad, slide: SlideEntry) -> list[DrawnSide]:
+        """Return the sides of a guide that turns about a joint: to the image of its point under the block, from the joint and from the
+        block."""
+        P, Q, guide = slide.at, str(group.outer_q), group.q
+        under, image = f"{P}_{{{guide}}}", f"{P.lower()}_{guide}"
+        first = self._about(guide, Q, P, "'", image, under)
+        heading = self.formulas.heading(guide) + Heading.of(slide.along.code)
+        way, speed = f"polar(1, {heading.code})", f"{slide.distance}_dot"
+        letter, rate = ("V", speed) if self.kind == "velocity" else ("a", f"{slide.distance}_ddot")
+        parallel = rf"\parallel {P}x_{{{guide}}}"
+        kind = "" if self.kind == "velocity" else "^r"
+        name, value, start = rf"-\vec{{{letter}}}{kind}_{{{P}/{under}}}", f"-{rate} * {way}", self._image(P)
+        extra = []
+        if self.kind == "acceleration":
+            omega = self.formulas.omega(guide)
+            coriolis, turn = rf"-\vec{{a}}^c_{{{P}/{under}}}", f"-2j * {omega} * {speed} * {way}"
+            size = rf"2 \left|{self.formulas.symbol(omega)}\,{self.formulas.symbol(speed)}\right|"
+            across = rf"\perp {P}x_{{{guide}}}"
+            call = f'Side({start!r}, "k_{guide}", r"{coriolis}", {turn}, r"{across}", r"{size}")'
+            extra = [DrawnSide(start, f"k_{guide}", coriolis, True, turn, "", call)]
+            start = f"k_{guide}"
+        call = f'Side({start!r}, {image!r}, r"{name}", {value}, r"{parallel}", way={way})'
+        last = DrawnSide(start, image, name, False, value, way, call)
+        return [*first[:-1], *extra, first[-1], last]
 
     def _slider(self, group: Dyad, slide: SlideEntry) -> list[DrawnSide]:
         if slide.on != GROUND:

@@ -26,12 +26,21 @@ def _marks(variant, answers):
     return mark(variant, texts)
 
 
-def test_a_right_drawing_gets_full_marks_from_any_pole_and_scale():
-    variant = course()["four_bar"].variant(2)
+@pytest.mark.parametrize(("name", "count"), [("four_bar", 11), ("slotted_lever", 11)])
+def test_a_right_drawing_gets_full_marks_from_any_pole_and_scale(name, count):
+    variant = course()[name].variant(2)
     marks = _marks(variant, _drawing(variant))
     drawn = [n for n in marks if n[:2] in ("v_", "a_", "pv", "pa", "kv", "ka")]
-    assert len(drawn) == 11
+    assert len(drawn) == count
     assert {n: marks[n].points / marks[n].out_of for n in drawn} == dict.fromkeys(drawn, 1.0)
+
+
+def test_a_guide_drawn_without_coriolis_costs_the_point_it_leads_to():
+    variant = course()["slotted_lever"].variant(2)
+    answers = _drawing(variant)
+    answers["a_k_4"] = answers["a_a"]
+    marks = _marks(variant, answers)
+    assert [n for n, m in marks.items() if n in answers and m.points < m.out_of] == ["a_k_4"]
 
 
 @pytest.mark.parametrize(("point", "mistake"), [("v_a", "pv_a_sense"), ("a_b1", "a_a_b1_sense")])
