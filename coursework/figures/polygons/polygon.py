@@ -317,7 +317,9 @@ class Polygon:
         right = [s for s, sign in second if sign > 0] + [s for s, sign in first if sign < 0]
         if len(right) < len(left):
             left, right = right, left
-        return " = ".join(" + ".join(side.name for side in sum_) for sum_ in (left, right)).replace("+ -", "- ")
+        return " = ".join(" + ".join(side.name for side in sum_) for sum_ in (left, right)).replace(
+            "+ -", "- "
+        )
 
     def _path(self, side: Side, target: str) -> Iterator[tuple[Side, int]]:
         """Yield the sides from the pole to a point, each with its sign; the last one is given."""
