@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import re
 from collections import Counter
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
 from functools import cached_property
@@ -148,6 +148,7 @@ class Exam:
     rejected: Sequence[Rejected] = ()
     charged: Mapping[Sitting, float] = field(default_factory=dict)
     measured: Mapping[tuple[str, str, int, int], Measure] | None = None
+    shown: Callable[[str], str] = str  #: name or code by which a student is named in what is told
 
     # -------------------------------------------------------------------- marks
 
@@ -178,7 +179,7 @@ class Exam:
         scale = stated or {**USUAL_SCALE, "step": 0.01}
         present = {graded.student for graded in self.machine}
         marks = {
-            student: float(mark_on(scale, result.counts, result.out_of) or 0)
+            self.shown(student): float(mark_on(scale, result.counts, result.out_of) or 0)
             for student, result in self.results(decisions).items()
             if student in present
         }
@@ -199,8 +200,11 @@ class Exam:
 
     @cached_property
     def provisional(self) -> dict[str, int]:
-        """Number of open answers of each student who has some."""
-        return {student: result.open for student, result in self.results().items() if result.open}
+        """Number of open answers of each student who has some, as named."""
+        waits = {
+            self.shown(student): result.open for student, result in self.results().items() if result.open
+        }
+        return dict(sorted(waits.items()))
 
     # --------------------------------------------------------------------- left
 
@@ -301,9 +305,12 @@ class Exam:
             for part, line in graded.lines.items()
         )
         for sheet in alike_lines(lines):
-            by_kind["alike"].setdefault(sheet.student, []).extend(sheet.owners[:2])
+            by_kind["alike"].setdefault(sheet.student, []).extend(map(self.shown, sheet.owners[:2]))
         return [
-            SuspiciousPattern(kind, tuple((student, ", ".join(places)) for student, places in found.items()))
+            SuspiciousPattern(
+                kind,
+                tuple(sorted((self.shown(student), ", ".join(places)) for student, places in found.items())),
+            )
             for kind, found in by_kind.items()
             if found
         ]

@@ -36,6 +36,8 @@ def names_in(page):
 def test_a_class_goes_by_codes_until_nothing_waits(desk):
     queue, table = desk.page(TEACHER, "/queue"), desk.page(TEACHER)
     assert (names_in(queue), names_in(table)) == ([], [])
+    after = desk.page(TEACHER, "/after", kind="accepted", question=f"{EXERCISE}/rA", answer="trop court")
+    assert ("XYZ-222" in after.text, names_in(after)) == (True, [])
     assert queue.text.index("XYZ-222") > 0
     listed = sorted(CODES.values(), key=table.text.index)
     assert listed == sorted(CODES.values())  # the order of the roster would tell

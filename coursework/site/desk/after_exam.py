@@ -43,7 +43,9 @@ def exam_of(now: ClassState) -> Exam:
     """Return the exam of a class."""
     rejected = tuple(row.row for row in now.rejected if row.waits)
     machine = tuple(now.machine.values())
-    return Exam(now.course, now.issued, machine, now.decisions, rejected, now.charged, now.measures)
+    return Exam(
+        now.course, now.issued, machine, now.decisions, rejected, now.charged, now.measures, now.shown
+    )
 
 
 def after_exam(request: Request) -> Response:

@@ -338,7 +338,7 @@ def gradebook(request: Request) -> Response:
         path.write_bytes(sent.data)
         try:
             scored = class_points(folder / "summary.csv", score if score in SCORES else "points")
-            waiting = [entry.name for entry in scored if entry.open]
+            waiting = [now.shown(entry.name) for entry in scored if entry.open]
             if not form.text("provisional"):
                 scored = [entry for entry in scored if not entry.open]
             most = form.text("most").strip().replace(",", ".")
