@@ -215,7 +215,7 @@ class _Frames:
         self.origins.append((0j, 0j, 0j))
 
     def _stated(self, body: int, point: str, values: Mapping[str, Any]) -> tuple[complex, complex]:
-        """Return the velocity and the acceleration of the origin of a free body, where they are stated: it drives, and is free no more."""
+        """Return the velocity and the acceleration of the origin of a free body, where they are stated: it is free no more."""
         if f"v_{point}_x" in values:
             self.free.remove(body)
         v, a = (

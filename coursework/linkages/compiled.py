@@ -389,9 +389,9 @@ class CompiledLinkage:
         for stem in stems:
             names |= dict.fromkeys(t.replace("theta", stem, 1) for t in self._turns)
         names |= dict.fromkeys(n for n in linkage.drive.rates[:order] if n in linkage.given)
-        if linkage.drive.kind == "slide":
-            at = formulas.reference[linkage.driver]
-            names |= dict.fromkeys(f"{kind}_{at}_{axis}" for kind in "va"[:order] for axis in "xy")
+        names |= dict.fromkeys(
+            f"{kind}_{point}_{axis}" for point in free for kind in "va"[:order] for axis in "xy"
+        )
         listed = ", ".join(names)
         values = ", ".join(f"{n}={n}" for n in names)
         return f"def residual({listed}):\n    return closure_gaps(MECHANISM, TRACKS, SIDES, {linkage.moved!r}, {order}, dict({values}))"
@@ -429,7 +429,8 @@ class CompiledLinkage:
             bodies += [
                 f"        Body({b!r}, {turn}, {p!r})," for b, p in ((jack, start), (linkage.drive.rod, end))
             ]
-            slides.append(f"        Slide({end!r}, {linkage.drive.rod!r}, {jack!r}),")
+            # before any other at the same point, so that it is the one along which the drive pushes
+            slides.insert(0, f"        Slide({end!r}, {linkage.drive.rod!r}, {jack!r}),")
         if self._followed:
             pushed = end if jack else formulas.reference[linkage.driver]
         gears = [
@@ -455,7 +456,11 @@ class CompiledLinkage:
 
     def _holder(self, body: str) -> str:
         """Return the point of a body that the ground or a body placed before it holds; none where slides alone hold it."""
-        before = self.formulas.order[: self.formulas.order.index(body)]
+        order = self.formulas.order
+        jack = self.linkage.driver if self.linkage.drive.kind == "jack" else ""
+        before = [
+            b for b in order[: order.index(body)] if b != jack
+        ]  # which holds nothing: its length varies
         points = self.linkage.bodies[body].points
         return next((p for p in points if set(self.linkage.holders(p)) & set(before)), "")
 

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from linkage_samples import NAMES, course
+from linkage_samples import FOLDER, NAMES, course
 from tables import each_row
 
 from coursework import open_course
@@ -182,6 +182,25 @@ def test_a_group_of_class_three_is_followed_over_the_whole_turn():
         assert np.max(np.abs(steps)) < 5, name
     gaps = exercise.solution.residual_graph.evaluate(("residual",), {**given, "theta2": turn})["residual"]
     assert np.max(gaps) < 1e-12
+
+
+def test_bars_on_a_body_that_slides_alone_hold_agree_with_its_rates(tmp_path):
+    """The body of two slides has an origin of its own; what is pinned to it moves as it does."""
+    folder = tmp_path / "course"
+    (folder / "exercises").mkdir(parents=True)
+    text = (FOLDER / "exercises" / "crossed_slides.toml").read_text("utf-8")
+    text = text.replace(
+        "[slides]",
+        '5 = { points = { K = "0 mm", E = "200 mm" } }\n6 = { at = "C", points = { E = "150 mm" } }\n[slides]',
+    )
+    text = text.replace("[bodies]", 'C = ["330 mm", "40 mm"]\n[bodies]').replace(
+        "[ask]", '[assembly]\nE = "left of K -> C"\n[ask]\nequations = true'
+    )
+    text = text.replace('"a_B"', '"a_B", "alpha6"').replace('to = "80 deg"', 'to = "60 deg"')
+    (folder / "exercises" / "crossed_bars.toml").write_text(text, "utf-8")
+    exercise = open_course(folder)["crossed_bars"]
+    gaps = exercise.solution.residual_graph.evaluate(("residual",), dict(exercise.variant(1).given))
+    assert np.max(gaps["residual"]) < 1e-12
 
 
 def test_a_group_that_does_not_close_is_nan_there_and_says_so_alone():
