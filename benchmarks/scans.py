@@ -1,11 +1,14 @@
 """Answer pages filled in by hand, printed and scanned in simulation, and read: what is right, wrong, and left to a person.
 
-python benchmarks/scans.py FOLDER [PAGES]      # 10 000 unless told; goes on where it stopped
-python benchmarks/scans.py FOLDER table        # of what was read so far
-python benchmarks/scans.py FOLDER wrong        # what was read wrong
+python benchmarks/scans.py FOLDER [PAGES] [KIND]   # 10 000 unless told, of one kind of scan or of all; goes on where it stopped
+python benchmarks/scans.py FOLDER table            # of what was read so far
+python benchmarks/scans.py FOLDER doubted          # of numbers that are doubted: what is taken if they are right answers
+python benchmarks/scans.py FOLDER wrong            # what was read wrong
 
-FOLDER keeps the printed sheets and a line a page, ``read.jsonl``. The handwriting is MNIST's test set (the bank of the
-tests, which trained nothing) and, every fifth page, scikit-learn's digits, of other writers, 8 by 8 pixels and so blurred.
+Two thirds of the numbers are right answers of a variant, rounded; of the wrong ones most are near a right one: a digit
+changed or exchanged, another sign, a point elsewhere, a few per cent too many. FOLDER keeps the printed sheets and a line a page, ``read.jsonl``. The handwriting is MNIST's test set (the bank of the
+tests, which trained nothing) and, every fifth page, scikit-learn's digits, of other writers, 8 by 8 pixels and so blurred
+(``pip install scikit-learn``; without it every page is of the first bank).
 """
 
 from __future__ import annotations
@@ -30,10 +33,12 @@ sys.path.insert(0, str(TESTS))
 
 import scanned_pages as simulated  # noqa: E402
 
+from coursework import open_course  # noqa: E402
+from coursework.marking.marking import mark_alone  # noqa: E402
 from coursework.scanning.digits import read_digits  # noqa: E402
 from coursework.scanning.pages import read_page  # noqa: E402
 from coursework.scanning.pictures import PageImage  # noqa: E402
-from coursework.sheets.answer_pages import AnswerPage, answer_pages, paper_code  # noqa: E402
+from coursework.sheets.answer_pages import AnswerField, AnswerPage, answer_pages, paper_code  # noqa: E402
 
 #: Exercises whose answer pages are filled in: numbers, choices, several choices, vectors, words, drawings.
 EXERCISES = (
@@ -45,7 +50,6 @@ SIZES = ("a4", "letter")
 
 def sheets(folder: Path) -> list[tuple[AnswerPage, Path]]:
     """The answer pages of the exercises, as printed; drawn once."""
-    from coursework import open_course
     from coursework.rendering.renderer import builtin_renderer
 
     course, found = open_course(), []
@@ -68,7 +72,10 @@ def bank(which: int) -> simulated.Bank:
     if which == 0:
         with np.load(TESTS / "handwritten_digits.npz") as kept:
             return simulated.handwriting(kept["digits"], kept["labels"])
-    from sklearn.datasets import load_digits
+    try:
+        from sklearn.datasets import load_digits
+    except ModuleNotFoundError:
+        return bank(0)
 
     digits = load_digits()
     large = [cv2.resize(np.float32(d), (24, 24), interpolation=cv2.INTER_CUBIC) for d in digits.images]
@@ -80,12 +87,86 @@ def printed(file: str) -> np.ndarray:
     return cv2.imread(file, cv2.IMREAD_GRAYSCALE)
 
 
-def one(index: int, page: AnswerPage, file: str) -> dict[str, Any]:
+RIGHT = 2 / 3  #: share of the numbers that are right answers
+VARIANTS = 60  #: of which answers are written; all have the pages of the first
+
+course = cache(open_course)
+
+
+@cache
+def variant_of(exercise: str, seed: int) -> Any:
+    return course()[exercise].variant(seed, "en")
+
+
+class Student:
+    """Somebody who writes right and wrong numbers of a variant."""
+
+    def __init__(self, exercise: str, rng: np.random.Generator):
+        self.rng, self.variant = rng, variant_of(exercise, int(rng.integers(1, VARIANTS + 1)))
+        self.parts = {part.id: part for part in self.variant.parts}
+
+    def value(self, field: AnswerField) -> float | None:
+        """The right number of a field of a single number."""
+        part = self.parts.get(field.part)
+        if part is None or field.coordinates > 1 or not part.sort.is_scalar or part.judge:
+            return None
+        value = self.variant.key.reference[part.quantity]
+        return float(value) if isinstance(value, (int, float)) and np.isfinite(value) else None
+
+    def is_right(self, field: AnswerField, text: str) -> bool:
+        return mark_alone(self.variant, self.parts[field.part], text).verdict == "correct"
+
+    def answer(self, field: AnswerField) -> str:
+        value = self.value(field)
+        if value is None:
+            return ""
+        text = self._fitting(field, value)
+        if not text or self.rng.random() < RIGHT:
+            return text
+        return self._fitting(field, float(self._spoilt(text)))
+
+    def _fitting(self, field: AnswerField, value: float) -> str:
+        """A number with three to five figures, if it fits the boxes."""
+        figures = int(self.rng.integers(3, 6))
+        places = max(0, figures - 1 - int(np.floor(np.log10(abs(value))))) if value else 0
+        text = f"{value:.{min(places, len(field.decimals))}f}"
+        whole = text.lstrip("-").partition(".")[0]
+        return text if len(whole) <= len(field.digits) and (field.sign or value >= 0) else ""
+
+    def _spoilt(self, text: str) -> str:
+        draw = self.rng.random()
+        places = [k for k, sign in enumerate(text) if sign.isdigit()]
+        if draw < 0.4:  # one digit is another
+            k = int(self.rng.choice(places))
+            return f"{text[:k]}{(int(text[k]) + int(self.rng.integers(1, 10))) % 10}{text[k + 1 :]}"
+        if draw < 0.5 and len(places) > 1:  # two neighbours are exchanged
+            k, other = places[-2:]
+            figures = list(text)
+            figures[k], figures[other] = figures[other], figures[k]
+            return "".join(figures)
+        factor = self.rng.choice(
+            [
+                -1,
+                2,
+                0.5,
+                10,
+                0.1,
+                np.pi / 180,
+                float(self.rng.uniform(0.9, 1.1)),
+                float(self.rng.uniform(0.1, 10)),
+            ]
+        )
+        return str(float(text) * factor)
+
+
+def one(index: int, page: AnswerPage, file: str, only: str = "") -> dict[str, Any]:
     """A page filled in, scanned and read; what became of each of its answers."""
     cv2.setNumThreads(1)
     rng = np.random.default_rng([23, index])
-    kind = list(simulated.KINDS)[index // 2 % len(simulated.KINDS)]
+    kind = only or list(simulated.KINDS)[index // 2 % len(simulated.KINDS)]
+    student = Student(page.fields[0].exercise, np.random.default_rng([29, index]))
     hand = simulated.a_hand(rng, bank(int(index % 5 == 4)))
+    hand.answers = student.answer
     filled, wrote = simulated.filled_in(printed(file), page, hand, odd=0.1)
     scan = simulated.KINDS[kind](rng)
     picture = simulated.scanned(filled, scan, rng)
@@ -100,11 +181,14 @@ def one(index: int, page: AnswerPage, file: str) -> dict[str, Any]:
         "seconds": seconds,
     }
     counts: Counter[str] = Counter()
-    row["wrong"] = []
+    row["wrong"], row["doubted"] = [], []
     for said, meant in zip(read.fields, wrote, strict=False):
         counts[_became(said, meant)] += 1
         if said.waits and not meant.waits:
             counts[f"why {said.waits}"] += 1
+            if said.waits == "doubted" and student.value(said.field) is not None:
+                is_right = [student.is_right(said.field, text) for text in (said.text, meant.text)]
+                row["doubted"].append((said.confidence, said.text == meant.text, *is_right))
         elif _became(said, meant) == "wrong":
             place = said.field.part, said.field.coordinate
             row["wrong"].append((*place, said.text, meant.text, meant.how, said.confidence))
@@ -124,14 +208,16 @@ def kept(folder: Path) -> Iterator[dict[str, Any]]:
         yield from (json.loads(line) for line in path.read_text("utf-8").splitlines())
 
 
-def run(folder: Path, count: int) -> None:
+def run(folder: Path, count: int, kind: str) -> None:
     folder.mkdir(parents=True, exist_ok=True)
     pages = sheets(folder)
     done = {row["index"] for row in kept(folder)}
     rest = [k for k in range(count) if k not in done]
     with ProcessPoolExecutor(os.cpu_count()) as pool, (folder / "read.jsonl").open("a") as out:
         chosen = [pages[np.random.default_rng([7, k]).integers(len(pages))] for k in rest]
-        for row in pool.map(one, rest, [p for p, _ in chosen], [str(f) for _, f in chosen], chunksize=4):
+        for row in pool.map(
+            one, rest, [p for p, _ in chosen], [str(f) for _, f in chosen], [kind] * len(rest), chunksize=4
+        ):
             out.write(json.dumps(row) + "\n")
             out.flush()
 
@@ -162,6 +248,32 @@ def table(folder: Path) -> None:
     print("\nTo a person besides, by reason:", ", ".join(f"{k} {n}" for k, n in why.most_common()))
 
 
+def doubted(folder: Path) -> None:
+    """What is taken of the doubted numbers that are right answers, by the least confidence, a place answered by a number
+    that need not wait being one."""
+    by: dict[str, list[dict[str, Any]]] = defaultdict(list)
+    for row in kept(folder):
+        by[row["kind"]].append(row)
+        by["all"].append(row)
+    print(
+        "| scanned as | pages | places | doubted | least confidence | taken | taken though something else was wrong | a person besides |"
+    )
+    print("|---|--:|--:|--:|--:|--:|--:|--:|")
+    for kind, rows in by.items():
+        total: Counter[str] = Counter()
+        for row in rows:
+            total.update(row["counts"])
+        asked = sum(total[k] for k in ("right", "wrong", "must wait", "waits"))
+        cases = [case for row in rows for case in row["doubted"]]
+        for least in (0.9, 0.95, 0.98):
+            taken = [case for case in cases if case[0] >= least and case[2]]
+            false = sum(not case[3] for case in taken)
+            left = (total["waits"] - len(taken)) / max(asked, 1)
+            print(
+                f"| {kind} | {len(rows)} | {asked} | {len(cases)} | {least} | {len(taken)} | {false} | {left:.1%} |"
+            )
+
+
 def wrong(folder: Path) -> None:
     for row in kept(folder):
         for each in row["wrong"]:
@@ -171,10 +283,10 @@ def wrong(folder: Path) -> None:
 
 
 def main() -> None:
-    folder, what = Path(sys.argv[1]), sys.argv[2] if len(sys.argv) > 2 else "10000"
+    folder, what, kind = (*sys.argv[1:4], "10000", "")[:3] if len(sys.argv) < 3 else (*sys.argv[1:4], "")[:3]
     if what.isdigit():
-        run(folder, int(what))
-    (wrong if what == "wrong" else table)(folder)
+        run(Path(folder), int(what), kind)
+    {"wrong": wrong, "doubted": doubted}.get(what, table)(Path(folder))
 
 
 if __name__ == "__main__":

@@ -113,6 +113,7 @@ class Hand:
     jitter: float = 0.5  #: mm, about the middle of a box
     slant: float = 0.0
     bank: Bank | None = None
+    answers: Callable[[AnswerField], str] | None = None  #: a number for a field; empty for any number
     rng: np.random.Generator = field(default_factory=lambda: np.random.default_rng(0))
     ink: np.ndarray = field(init=False)
 
@@ -375,10 +376,15 @@ def _numbered(hand: Hand, one: AnswerField, odd: float) -> Wrote:
     if draw < 0.08 + 2 * odd / 3:
         return _broken(hand, one, whole, behind)
     sign = "-" if rng.random() < 0.35 else ""
+    if hand.answers and (text := hand.answers(one)):
+        sign, (whole, _, behind) = "-" * text.startswith("-"), text.lstrip("-").partition(".")
+        return _plainly(hand, one, sign, whole, behind, with_power=False)
     return _plainly(hand, one, sign, whole, behind)
 
 
-def _plainly(hand: Hand, one: AnswerField, sign: str, whole: str, behind: str) -> Wrote:
+def _plainly(
+    hand: Hand, one: AnswerField, sign: str, whole: str, behind: str, *, with_power: bool = True
+) -> Wrote:
     rng = hand.rng
     if sign and one.sign is not None:
         hand.minus(one.sign)
@@ -386,7 +392,7 @@ def _plainly(hand: Hand, one: AnswerField, sign: str, whole: str, behind: str) -
     _digits(hand, one.digits[at:], whole)
     _digits(hand, one.decimals, behind)
     text = f"{sign}{whole}" + (f".{behind}" if behind else "")
-    if one.power and rng.random() < 0.12:
+    if with_power and one.power and rng.random() < 0.12:
         power, negative = str(int(rng.integers(1, 13))), rng.random() < 0.4
         if negative and one.power_sign is not None:
             hand.minus(one.power_sign)

@@ -22,6 +22,9 @@ BLANK, MINUS, OTHER = 10, 11, 12
 #: A digit, or an emptiness, of at least this confidence is taken; what is below goes to a person (docs/scans.md: how often it errs).
 CONFIDENT = 0.995
 
+#: A number whose digits are read with at least this confidence is taken if it is the right answer of its variant.
+LIKELY = 0.9
+
 #: What the net sees: a box of 7 mm by 9 mm at 4 px/mm, and a rim of two pixels.
 HEIGHT, WIDTH, RIM = 36, 28, 2
 

@@ -17,6 +17,7 @@ DIFFERS = "differs"  #: scans of one page say different things
 DRAWN = "drawn"  #: coordinates were left blank, and something is drawn
 NOBODY = "nobody"  #: why a paper without a name waits
 CODE = "code"  #: why a page waits of which the code cannot be read
+DOUBTED = "doubted"  #: why a number waits whose digits are read with less confidence than is asked
 
 
 class FieldPosition(NamedTuple):
@@ -118,6 +119,9 @@ class Gathered:
     waits: dict[str, int] = field(default_factory=dict)  #: cards by id of a page
     unused: list[Typed] = field(default_factory=list)  #: what was typed and fits nothing that was scanned
     pending: list[Pending] = field(default_factory=list)
+    confirmed: dict[str, int] = field(
+        default_factory=dict
+    )  #: doubted numbers that count as they are the right answer, by id of a page
     drawn: dict[tuple[str, str, int], FieldReading] = field(
         default_factory=dict
     )  #: what was drawn on, by paper, exercise and seed
@@ -137,6 +141,9 @@ class Parts(Protocol):
 
     def joined(self, part: Part, texts: Sequence[str]) -> str:
         """Return the texts of the coordinates as one answer."""
+
+    def is_right(self, part: Part, answer: str) -> bool:
+        """Return True if an answer is right by itself, within its margin."""
 
 
 def gather(
@@ -222,7 +229,29 @@ def _gather_paper(
                 _to_click(s, printed, paper, student, readings)
                 for s, printed in zip(settled, fields, strict=True)
             ]
-        _add_answer(combined, student, part, settled, parts)
+        _add_answer(combined, student, part, _confirmed(combined, part, settled, parts), parts)
+
+
+def _confirmed(
+    combined: Gathered, part: Part, settled: Sequence[_Settled | AnswerCard | None], parts: Parts
+) -> Sequence[_Settled | AnswerCard | None]:
+    """Return the pieces of an answer as settled if some are doubted and together they are the right answer of this
+    variant: that a misreading hits it is rarer than that a sure digit is wrong (docs/scans.md)."""
+    doubted = [item for item in settled if isinstance(item, AnswerCard)]
+    if not doubted or not all(card.waits == DOUBTED for card in doubted):
+        return settled
+    taken = [
+        _Settled(item.candidate, item.pages) if isinstance(item, AnswerCard) else item for item in settled
+    ]
+    texts = [item.text for item in taken if item is not None]
+    if len(texts) < len(taken):
+        return settled
+    if not parts.is_right(part, texts[0] if len(texts) == 1 else parts.joined(part, texts)):
+        return settled
+    for card in doubted:
+        for page in card.pages:
+            combined.confirmed[page] = combined.confirmed.get(page, 0) + 1
+    return taken
 
 
 def _note_drawing(combined: Gathered, paper: PrintedPaper, readings: Sequence[FieldReading]) -> None:

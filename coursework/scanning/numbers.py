@@ -19,7 +19,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from coursework.scanning.beside import written_beside
-from coursework.scanning.digits import CONFIDENT
+from coursework.scanning.digits import CONFIDENT, LIKELY
 from coursework.scanning.straightening import SCALE, Straight
 from coursework.scanning.strokes import (
     STRONG,
@@ -119,7 +119,8 @@ def _written(
         unit,
     )
     confidence = min((c for _, c in texts.values()), default=1.0)
-    reason = reason or ("digit" if confidence < least else "") or _against_rules(row_read)
+    reason = reason or ("digit" if confidence < min(least, LIKELY) else "") or _against_rules(row_read)
+    reason = reason or ("doubted" if confidence < least else "")
     return FieldText(_text(row_read, field.unit_text), confidence, reason)
 
 

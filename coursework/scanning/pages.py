@@ -27,7 +27,7 @@ _SURER = (
 FOUND = ("answers", "statement", "no code", "no sheet", "other assignment", "two pages", "not straight")
 #: Why an answer may wait for a person.
 WAITS = (
-    *("free", "struck", "joined", "digit", "sign", "gap", "comma", "power", "unit"),
+    *("free", "struck", "joined", "digit", "doubted", "sign", "gap", "comma", "power", "unit"),
     *("tick", "two ticks", "taken back", "written", "drawing", "elsewhere"),
 )
 

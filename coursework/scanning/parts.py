@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+from coursework.marking.marking import mark_alone
 from coursework.scanning.gathering import PrintedPaper
 from coursework.scanning.page_reading import Papers
 
@@ -31,6 +32,13 @@ class Joins:
 
     def is_open(self, part: tuple[str, int, str]) -> bool:
         return bool(self.part_of(part)[1].sort.is_open)
+
+    def is_right(self, part: tuple[str, int, str], answer: str) -> bool:
+        """Return True if an answer is right by itself; one that is judged with others never is."""
+        variant, question = self.part_of(part)
+        if question.judge or any(question.id in group for group in variant.exercise.spec.either_order):
+            return False
+        return mark_alone(variant, question, answer).verdict == "correct"
 
     def is_drawn(self, part: tuple[str, int, str]) -> bool:
         variant, question = self.part_of(part)

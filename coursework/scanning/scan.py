@@ -399,7 +399,7 @@ def _write_pages(
         asking = [f for f in page.fields if f.part]
         read = {
             "of": paper.pages if paper else "", "fields": len(asking) if paper else "",
-            "read": sum(not f.waits for f in asking) if paper else "", "waiting": combined.waits.get(scanned_page.id, 0) if paper or page.what == LOST else "",
+            "read": sum(not f.waits for f in asking) + combined.confirmed.get(scanned_page.id, 0) if paper else "", "waiting": combined.waits.get(scanned_page.id, 0) if paper or page.what == LOST else "",
         }  # fmt: skip
         table.write({**source, "what": state, **owner, **read, "picture": picture})
         book.copies += scanned_page.is_copy

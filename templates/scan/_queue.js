@@ -60,7 +60,7 @@
   function reading(card) {
     if (card.sort !== "question") return "";
     if (!card.candidate) return said("queue.nothing_read");
-    return said("queue.was_read") + " " + card.candidate + (card.waits === "digit" && card.confidence ? " · " + fill(said("queue.sure"), card.confidence) : "");
+    return said("queue.was_read") + " " + card.candidate + ((card.waits === "digit" || card.waits === "doubted") && card.confidence ? " · " + fill(said("queue.sure"), card.confidence) : "");
   }
   function draw() {
     document.documentElement.lang = lang;

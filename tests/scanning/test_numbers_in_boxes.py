@@ -133,14 +133,18 @@ def test_a_faint_digit_is_read_or_waits_but_is_not_left_out(faint):
 
 
 def test_a_box_with_less_confidence_than_is_stated_waits_with_what_it_looks_like():
+    chance = 0.97
+
     def doubting(cells):
         digits, _ = READER(cells)
-        return digits, np.where(digits == 9, 0.97, 1.0)
+        return digits, np.where(digits == 9, chance, 1.0)
 
     found = number(flat(row("319")), FIELD, doubting)
-    assert (found.text, found.waits) == ("319", "digit")
+    assert (found.text, found.waits) == ("319", "doubted")
     assert found.confidence == pytest.approx(0.97)
     assert not number(flat(row("319")), FIELD, doubting, least=0.95).waits
+    chance = 0.8
+    assert number(flat(row("319")), FIELD, doubting).waits == "digit"
 
 
 @each_row("dark", [40, 90, 200])

@@ -1,0 +1,75 @@
+"""A number that is read with less confidence counts where it is the right answer of its variant, and waits otherwise."""
+
+from __future__ import annotations
+
+import pytest
+
+from coursework import open_course
+from coursework.scanning.gathering import FieldPosition, PrintedField, PrintedPaper, gather
+from coursework.scanning.parts import Joins
+from coursework.scanning.scan_store import ANSWERS, PageScan, Scanned, ScannedField, ScannedFile
+
+CODE, FILE = "ABC", ScannedFile("a.png", "f" * 8, 1)
+
+
+class Paper:
+    """Papers with one variant, as :class:`Joins` asks them."""
+
+    def __init__(self, variant):
+        self._variant = variant
+        self.papers = {CODE: self}
+        self.records = [variant.record]
+
+    def variant(self, code, index):
+        return self._variant
+
+    def __getitem__(self, code):
+        return ()
+
+
+def gathered(variant, part, *fields):
+    """What comes of the fields of a part: text, confidence and why each waits."""
+    key = variant.exercise.name, variant.seed, part
+    count = len(fields)
+    scanned = tuple(
+        ScannedField(*key, k, count, "number", text, confidence, waits, "", (0, 0, 1, 1))
+        for k, (text, confidence, waits) in enumerate(fields)
+    )
+    asked = tuple(PrintedField(FieldPosition(*key, k), count, "number", 1) for k in range(count))
+    printed = {CODE: PrintedPaper(CODE, "Zoé", 1, asked)}
+    page = Scanned(FILE, 1, "page-1", PageScan(ANSWERS, "", CODE, 1, scanned, True))
+    return gather([page], printed, (), Joins(Paper(variant), printed))
+
+
+@pytest.fixture(scope="module")
+def variant():
+    return open_course()["slotted_mechanism"].variant(4, "en")
+
+
+def test_a_doubted_number_counts_where_it_is_right_alone(variant):
+    right = f"{float(variant.key.reference['rA']):.1f}"
+    wrong = f"{float(right) + 20:.1f}"
+    told = {
+        "right": [(right, 0.91, "doubted")],
+        "with its unit": [(f"{right} mm", 0.99, "doubted")],
+        "wrong": [(wrong, 0.99, "doubted")],
+        "read with too little confidence": [(right, 0.5, "digit")],
+        "struck by an edge": [(right, 0.99, "digit")],
+        "written beside": [(right, 0.99, "free")],
+    }
+    found = {name: gathered(variant, "rA", *fields) for name, fields in told.items()}
+    assert {name: [a.answer for a in one.answers] for name, one in found.items() if one.answers} == {
+        "right": [right],
+        "with its unit": [f"{right} mm"],
+    }
+    assert all(len(one.cards) == (not one.answers) for one in found.values())
+    assert found["right"].confirmed == {"page-1": 1}
+
+
+def test_coordinates_count_where_all_together_are_right():
+    variant = open_course()["joint_twist"].variant(1, "en")
+    first, *others = (f"{v:.0f}" for v in variant.key.reference["V_plane"])
+    sure = [(text, 1.0, "") for text in others]
+    assert len(gathered(variant, "V_plane", (first, 0.99, "doubted"), *sure).answers) == 1
+    assert len(gathered(variant, "V_plane", (f"{first}1", 0.99, "doubted"), *sure).cards) == 1
+    assert len(gathered(variant, "V_plane", (first, 0.99, "doubted"), *sure[:-1], ("9", 1.0, "")).cards) == 1
