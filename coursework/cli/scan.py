@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
 
@@ -55,6 +55,12 @@ def _ready() -> None:
     ),
 )
 @decimal_option
+@click.option(
+    "--open",
+    "opens",
+    is_flag=True,
+    help="Open the page of the queue in the browser, and take what is typed there, until Ctrl-C.",
+)
 @click.pass_context
 def scan(
     context: click.Context,
@@ -64,6 +70,7 @@ def scan(
     typed: Sequence[Path],
     sure: float,
     decimal: str,
+    opens: bool,
 ) -> int:
     """Read scans of answer pages: PDFs, pictures, and zips or folders of them, in any order.
 
@@ -91,7 +98,44 @@ def scan(
             spreadsheet=SPREADSHEETS[decimal],
             progress=advance,
         )
-    return _print_scan_book(book, out)
+    status = _print_scan_book(book, out)
+    return (
+        _typed_in_browser(opened(context), issued, out, sure, decimal) if opens and book.waiting else status
+    )
+
+
+def _typed_in_browser(course: Any, issued: Path, out: Path, sure: float, decimal: str) -> int:
+    """Serve the page of the queue until Ctrl-C, or until nothing waits; give the status of what was typed last."""
+    import tempfile
+    import webbrowser
+    from threading import Thread
+
+    from coursework.scanning import scan as scanning
+    from coursework.scanning.queue_server import QueueServer
+    from coursework.system.tables import SPREADSHEETS
+
+    status = FOUND
+
+    def take(data: bytes) -> None:
+        nonlocal status
+        with tempfile.TemporaryDirectory(prefix="coursework-") as folder:
+            path = Path(folder, "typed.csv")
+            path.write_bytes(data)
+            book = scanning.scan(
+                course, (), issued, out, typed=[path], least=sure, spreadsheet=SPREADSHEETS[decimal]
+            )
+        status = _print_scan_book(book, out)
+        if not book.waiting:
+            Thread(target=server.shutdown, daemon=True).start()
+
+    with QueueServer(out, take) as server:
+        say("type at {url}; Ctrl-C ends it", url=server.url)
+        webbrowser.open(server.url)
+        try:
+            server.serve_forever()
+        except KeyboardInterrupt:
+            return status
+    return status
 
 
 def _print_scan_book(book: ScanBook, out: Path) -> int:

@@ -288,7 +288,19 @@
     const done = cards.filter((card) => state.get(card.id).done).length;
     told.textContent = fill(said("queue.saved"), name, done, cards.length);
   }
-  document.getElementById("save-typed").addEventListener("click", () => save("typed.csv", [data.typed_columns, ...typed()]));
+  // Where the command serves the page, what is typed goes straight back, and the page comes anew with what waits still.
+  function send() {
+    const sent = { method: "POST", headers: { "Content-Type": "text/csv" }, body: csv([data.typed_columns, ...typed()]) };
+    fetch("../typed", sent).then(async (reply) => {
+      if (reply.ok) location.reload(); else told.textContent = fill(said("queue.refused"), await reply.text());
+    }).catch(() => { told.textContent = said("queue.ended"); });
+  }
+  const isServed = location.protocol === "http:";
+  if (isServed) {
+    document.getElementById("save-typed").dataset.said = "queue.send_typed";
+    document.getElementById("keeps").dataset.said = "queue.sent_back";
+  }
+  document.getElementById("save-typed").addEventListener("click", () => isServed ? send() : save("typed.csv", [data.typed_columns, ...typed()]));
   document.getElementById("save-answers").addEventListener("click", () => save("answers.csv", [data.answer_columns, ...answers()]));
   document.getElementById("next").addEventListener("click", () => nextOpen(current()));
   for (const button of document.querySelectorAll("[data-lang]")) button.addEventListener("click", () => {
