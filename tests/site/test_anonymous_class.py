@@ -39,6 +39,8 @@ def test_a_class_goes_by_codes_until_nothing_waits(desk):
     after = desk.page(TEACHER, "/after", kind="accepted", question=f"{EXERCISE}/rA", answer="trop court")
     assert ("XYZ-222" in after.text, names_in(after)) == (True, [])
     assert queue.text.index("XYZ-222") > 0
+    evening = desk.page(TEACHER, "/after")
+    assert (names_in(evening), "XYZ-222" in evening.text) == ([], True)
     listed = sorted(CODES.values(), key=table.text.index)
     assert listed == sorted(CODES.values())  # the order of the roster would tell
     student = page_of(desk, "XYZ-222")
