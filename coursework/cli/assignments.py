@@ -197,6 +197,11 @@ def build_papers(context: click.Context, exercises: Sequence[str]) -> None:
         else "worked solutions and the key, for the staff only: {folder}",
         folder=out / "instructor",
     )
+    if "attendance" in formats and only is None and (out / "attendance.csv").exists():
+        say(
+            "lists of the rooms, for the staff only: {folder}; attendance.csv is to be filled in",
+            folder=out / "instructor",
+        )
     if "nbgrader" in formats and only is None:
         title = assignment.name if assignment else names[0]
         say(
@@ -326,6 +331,7 @@ def _issued_assignment(
     stood: Mapping[str, Any] | None,
 ) -> AssignedVariants:
     """Issue the papers of an assignment; those issued ``before`` stay."""
+    from coursework.issuing.attendance import seating_faults
     from coursework.issuing.issued import secret_of
     from coursework.issuing.roster import Student
     from coursework.issuing.variant_assignment import assign_variants
@@ -334,6 +340,7 @@ def _issued_assignment(
     if settings.path("roster") is not None and not given["again"]:
         students = _roster(settings, notes)
         _check_identity(assignment, students, notes)
+        notes += seating_faults(students)
     elif before is not None and before.get("roster"):
         students = []
         if not given["again"] and not given["make_up"]:

@@ -7,13 +7,19 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
+from coursework.errors import counted
 from coursework.issuing.exam_columns import cell, extra_time_of, group_of, room_of, seat_of
 from coursework.issuing.identity import NUMBER
 from coursework.issuing.papers import IssuedPaper, natural
+from coursework.issuing.roster import Student
+from coursework.issuing.students import folded
+from coursework.messages import Message
 from coursework.rendering.renderer import Renderer
 from coursework.sheets.attendance import ExamLists, ListedStudent, RoomList
 from coursework.system.tables import Spreadsheet, csv_file
 from coursework.system.writing import File
+
+_LISTED = 5  #: names that a note lists
 
 
 def exam_lists(issued_papers: Sequence[IssuedPaper], lang: str) -> ExamLists:
@@ -77,6 +83,29 @@ def list_files(
 
 def _printed(renderer: Renderer, issued_papers: Sequence[IssuedPaper], lang: str, *, public: bool) -> bytes:
     return renderer.attendance_pdf(exam_lists(issued_papers, lang), public=public)
+
+
+def seating_faults(students: Sequence[Student]) -> Iterator[Message]:
+    """Yield a note on each seat that two students have, and on students without a room where others have one."""
+    seats: dict[tuple[str, str], list[str]] = {}
+    for student in students:
+        if seat := seat_of(student.columns):
+            seats.setdefault((room_of(student.columns), folded(seat)), []).append(student.name)
+    for (room, seat), names in seats.items():
+        if len(names) > 1:
+            yield Message(
+                "the roster gives the seat {seat} to {count}: {names}",
+                seat=" ".join(filter(None, (room, seat.upper()))),
+                count=counted(len(names), "student"),
+                names=", ".join(names[:_LISTED]),
+            )
+    without = [student.name for student in students if not room_of(student.columns)]
+    if without and len(without) < len(students):
+        yield Message(
+            "{count} without a room: {names}",
+            count=counted(len(without), "student"),
+            names=", ".join(without[:_LISTED]) + (", …" if len(without) > _LISTED else ""),
+        )
 
 
 def table_rows(issued_papers: Sequence[IssuedPaper], lang: str) -> Iterator[Mapping[str, Any]]:

@@ -6,6 +6,7 @@ import pytest
 from tables import each_row
 
 from coursework.errors import BadInput
+from coursework.issuing.attendance import seating_faults
 from coursework.issuing.exam_columns import (
     duration_text,
     extra_time_of,
@@ -100,3 +101,15 @@ def test_the_same_seat_in_another_room_is_no_neighbour():
     near = _neighbours(roster, lambda student: student.name)
     assert "S4" in near["S0"]
     assert "S2" not in near["S0"]
+
+
+def test_seats_that_two_have_and_students_without_a_room_are_noted():
+    places = {"Ada": ("A", "B1"), "Bo": ("A", "b1"), "Cy": ("B", "B1"), "Di": ("", "")}
+    students = [
+        Student(name, columns={"salle": room, "place": seat}) for name, (room, seat) in places.items()
+    ]
+    assert [str(note) for note in seating_faults(students)] == [
+        "the roster gives the seat A B1 to 2 students: Ada, Bo",
+        "1 student without a room: Di",
+    ]
+    assert list(seating_faults(students[2:3])) == list(seating_faults([Student("Eve")])) == []
