@@ -59,6 +59,7 @@ def dry_run(
         for number, share in enumerate(shares, 1):
             white[number] = max(share, white.get(number, 0.0))
     covered = sum(map(len, sample))
+    covers = int(assignment is not None and assignment.cover)  # a cover bears its table alone
     points: dict[str, list[float]] = {}
     used: dict[str, set[tuple[Any, ...]]] = {}
     for issue in issues:
@@ -71,7 +72,7 @@ def dry_run(
         tuple(pages),
         round(weighted * len(printed) / covered),
         round(sheets * len(printed) / covered),
-        {number: share for number, share in white.items() if share > WHITE},
+        {number: share for number, share in white.items() if share > WHITE and number > covers},
         {name: (min(each), max(each)) for name, each in points.items()},
         {name: (len(values), _left(course, name, len(values))) for name, values in used.items()},
     )

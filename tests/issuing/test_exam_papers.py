@@ -131,26 +131,19 @@ def test_a_dry_run_tells_pages_white_points_and_variants_and_writes_nothing(smal
     )
     (tmp_path / "final.toml").write_text(exam)
     out = tmp_path / "out"
-    assert (
-        run(
-            [
-                "--course",
-                str(small_course),
-                "build",
-                str(tmp_path / "final.toml"),
-                "--out",
-                str(out),
-                "--dry-run",
-            ]
-        )
-        == 0
-    )
+    asked = ["--course", str(small_course), "build", str(tmp_path / "final.toml"), "--out", str(out)]
+    assert run([*asked, "--dry-run"]) == 0
     told = capsys.readouterr().out.splitlines()
     assert told[0] == "4 papers, 2 pages each: 8 pages in all, 4 sheets of paper (measured on 2 of them)"
-    assert told[1].startswith("white space: page 1, up to ")
+    assert told[1] == "white space: no page is white by more than a quarter"
     assert told[-3:-1] == ["points: 4: crank_pin 4", told[-2]]
     assert told[-2].startswith("variants of crank_pin: 2 used, ")
     assert told[-1] == "nothing was written"
+    (tmp_path / "final.toml").write_text(
+        exam.replace("work = 40", "work = 0").replace("cover = true", "cover = false")
+    )
+    assert run([*asked, "--dry-run"]) == 0
+    assert capsys.readouterr().out.splitlines()[1].startswith("white space: page 1, up to ")
     assert not out.exists()
 
 
