@@ -63,6 +63,17 @@ def stored_table(connection: Connection, number: int, state: str) -> tuple[Class
     return None if row is None else (ClassCounts(*row[:3]), row.content)
 
 
+def stored_tables(connection: Connection, states: Mapping[int, str]) -> dict[int, tuple[ClassCounts, str]]:
+    """Return the stored counts and tables of the assignments whose summary is of exactly their state."""
+    columns = class_summary.c
+    query = select(
+        columns.assignment_id, columns.students, columns.handed_in, columns.waiting, columns.content
+    )
+    current = columns.state.in_(states.values()), columns.assignment_id.in_(states)
+    rows = connection.execute(query.where(*current))
+    return {row.assignment_id: (ClassCounts(*row[1:4]), row.content) for row in rows}
+
+
 def put_summary(connection: Connection, number: int, state: str, counts: ClassCounts, content: str) -> None:
     """Store the summary of an assignment, in place of that of another state."""
     row = {"assignment_id": number, "state": state, **counts._asdict(), "content": content}

@@ -16,9 +16,16 @@ from coursework.database.class_summaries import (
     ClassCounts,
     put_summary,
     stored_table,
+    stored_tables,
     summary_states,
 )
-from coursework.database.instructor_queries import AssignmentOverview, Stamp, listed_assignments, stamp
+from coursework.database.instructor_queries import (
+    AssignmentOverview,
+    Stamp,
+    listed_assignments,
+    stamp,
+    stamps,
+)
 from coursework.errors import BadInput
 from coursework.gradebook.adjustments import NEUTRAL, SPARED
 from coursework.gradebook.book import Result
@@ -62,6 +69,12 @@ class ClassRow:
     late: int  #: seconds
     handed_in: bool
     open: int  #: answers that wait for a person; until then the mark is provisional
+    counts: float  #: points on which the mark is based
+    on_site: bool  #: handed in on the site, perhaps blank
+
+    @property
+    def has_answered(self) -> bool:
+        return any(cell.sign not in ("", "missing") for cell in self.cells)
 
     @property
     def waits(self) -> int:
@@ -117,6 +130,7 @@ def _row(
         number, now.shown(student), identity, tuple(cells.get(question, BLANK) for question in now.questions),
         result.points, result.out_of, mark_of(now.adjusted, result.counts, result.out_of),
         tries, submitted.late if submitted else 0, bool(cells) or submitted is not None, result.open,
+        result.counts, submitted is not None,
     )  # fmt: skip
 
 
@@ -171,6 +185,11 @@ class ClassTable:
     def has_mark(self) -> bool:
         return bool((self.about.stated or {}).get("mark"))
 
+    @property
+    def of(self) -> float:
+        """Maximum of a mark; 0 without marks."""
+        return float(self._parsed["of"])
+
     @cached_property
     def rows(self) -> list[ClassRow]:
         """Row of every student, in the order of the roster."""
@@ -198,6 +217,21 @@ def class_table(site: Site, assignment_id: int) -> ClassTable:
         state = summary_states(connection, site.course, [about], {assignment_id: at})[assignment_id]
         stored = stored_table(connection, assignment_id, state)
     return computed_table(site, assignment_id) if stored is None else ClassTable(about, at, *stored)
+
+
+def class_tables(site: Site, abouts: Sequence[AssignmentOverview]) -> dict[int, ClassTable]:
+    """Return the tables of several classes, by assignment: as stored, unless something has changed since."""
+    numbers = [about.id for about in abouts]
+    pass_dates(site, site.clock(), *numbers)
+    with site.store.reading() as connection:
+        at = stamps(connection, numbers)
+        stored = stored_tables(connection, summary_states(connection, site.course, abouts, at))
+    return {
+        about.id: ClassTable(about, at[about.id], *stored[about.id])
+        if about.id in stored
+        else computed_table(site, about.id)
+        for about in abouts
+    }
 
 
 def table_here(request: Request, assignment_id: int) -> ClassTable:
@@ -239,8 +273,13 @@ def _content(now: ClassState) -> str:
     table_rows, lines = rows(now), []
     for row in table_rows:
         own = [cells.setdefault(cell, len(cells)) for cell in row.cells]
-        rest = row.points, row.out_of, row.mark, row.tries, row.late, row.handed_in, row.open
+        rest = (
+            row.points, row.out_of, row.mark, row.tries, row.late, row.handed_in, row.open, row.counts, row.on_site,
+        )  # fmt: skip
         lines.append([row.student, row.identity, own, *rest])
     questions = [[exercise, part, now.number(exercise, part)] for exercise, part in now.questions]
-    content = {"questions": questions, "means": _means(now, table_rows), "cells": list(cells), "rows": lines}
+    scale = (now.adjusted.assignment or {}).get("mark") or {}
+    content = {
+        "questions": questions, "means": _means(now, table_rows), "cells": list(cells), "rows": lines, "of": scale.get("of", 0),
+    }  # fmt: skip
     return json.dumps(content)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import math
 from collections import Counter
 from collections.abc import Mapping, Sequence
@@ -12,20 +13,18 @@ from sqlalchemy import Connection
 from starlette.responses import Response
 
 from coursework.database.areas import groups_known, students_within
-from coursework.database.class_state import ClassState
 from coursework.database.instructor_queries import AssignmentOverview, listed_assignments
 from coursework.database.permissions import Permission, group_key
 from coursework.errors import BadInput
 from coursework.gradebook import semester
 from coursework.gradebook.class_points import Scored
-from coursework.gradebook.columns import VERDICTS
-from coursework.gradebook.scale import mark_of
 from coursework.gradebook.semester import Assessed, SemesterLine
 from coursework.issuing.exam_columns import group_of
 from coursework.issuing.identity import identifies
 from coursework.issuing.students import folded
 from coursework.language.numbers import localise, typed_number
-from coursework.site.desk.class_cache import CLASS_GROUP, assignment_title, class_within
+from coursework.site.desk.class_cache import CLASS_GROUP, assignment_title
+from coursework.site.desk.class_table import ClassTable, class_tables
 from coursework.site.desk.files import spreadsheet_of
 from coursework.site.frame.paging import page_of
 from coursework.site.frame.requests import Request, Route
@@ -99,8 +98,9 @@ def semester_file(request: Request) -> Response:
 
 
 def _query(request: Request) -> str:
-    """Return the query without its page and search, for the file."""
-    return urlencode([item for item in request.query_params.multi_items() if item[0] not in ("page", "find")])
+    """Return what the query chooses, for the file."""
+    items = request.query_params.multi_items()
+    return urlencode([(k, text) for k, text in items if k.startswith(_WEIGHT) or k in (_ABSENT, CLASS_GROUP)])
 
 
 def _table(request: Request) -> SemesterTable:
@@ -110,16 +110,17 @@ def _table(request: Request) -> SemesterTable:
     with request.site.store.reading() as connection:
         theirs = _assignments(request, connection)
         groups = groups_known(connection)
+    weights = {about.id: _weight(request, about) for about, _ in theirs}
+    tables = class_tables(request.site, [about for about, _ in theirs if weights[about.id]])
     assignments, read = [], []
     for about, students in theirs:
-        weight = _weight(request, about)
-        now = class_within(request.site, about.id, students) if weight else None
-        is_hidden = now is not None and bool(now.codes)
+        table, weight = tables.get(about.id), weights[about.id]
+        is_hidden = table is not None and bool((about.stated or {}).get("anonymous")) and table.waiting > 0
         text = localise(f"{weight:g}", request.lang) if weight else ""
         title = assignment_title(about, request.lang)
         assignments.append(WeighedAssignment(about.id, about.name, title, text, is_hidden))
-        if now is not None and not is_hidden:
-            read.append(_assessed(now, weight))
+        if table is not None and not is_hidden:
+            read.append(_assessed(table, students, weight))
     semester.check_names(read)
     lines = semester.semester(read)
     groups = {
@@ -157,21 +158,22 @@ def _weight(request: Request, about: AssignmentOverview) -> float:
     return weight
 
 
-def _assessed(now: ClassState, weight: float) -> Assessed:
-    """Return the marks of a class."""
-    scale = (now.adjusted.assignment or {}).get("mark")
-    scored = []
-    for student, result in now.results.items():
-        percent = 100 * result.counts / result.out_of if result.out_of else 0.0
-        mark = mark_of(now.adjusted, result.counts, result.out_of) if scale else ""
-        columns = now.issued.columns.get(student, {})
+def _assessed(table: ClassTable, students: frozenset[str] | None, weight: float) -> Assessed:
+    """Return the marks of a class, or of some of its students."""
+    scored, groups, handed_in = [], {}, {}
+    roster: Mapping[str, Mapping[str, str]] = json.loads(table.about.columns or "{}")
+    for row in table.rows:
+        if students is not None and row.student not in students:
+            continue
+        columns = roster.get(row.student, {})
         ids = tuple((title, value) for title, value in columns.items() if value and identifies(title))
-        answered = any(result.verdicts.get(verdict) for verdict in VERDICTS if verdict != "missing")
-        points = mark or ("0" if scale else f"{percent:.10g}")
-        scored.append(Scored(student, ids, points, "", answered, str(result.open or "")))
-    groups = {folded(s): group for s, cells in now.issued.columns.items() if (group := group_of(cells))}
-    handed_in = {folded(student): "" for student, one in now.site_submissions.items() if one.attempts}
-    return Assessed(now.about.name, weight, scored, float(scale["of"]) if scale else 100.0, groups, handed_in)
+        percent = 100 * row.counts / row.out_of if row.out_of else 0.0
+        points = (row.mark or "0") if table.of else f"{percent:.10g}"
+        scored.append(Scored(row.student, ids, points, "", row.has_answered, str(row.open or "")))
+        groups[folded(row.student)] = group_of(columns)
+        if row.on_site:
+            handed_in[folded(row.student)] = ""
+    return Assessed(table.about.name, weight, scored, table.of or 100.0, groups, handed_in)
 
 
 ROUTES = (
