@@ -36,6 +36,11 @@ def typst_source(folders: Sequence[Path], book: Book, paper: str = "a4", *, apar
             exercise.handout.exercise: _exercise(env, exercise, "typ.j2") for exercise in book.exercises
         }
     }
+    names["papers"] = {
+        exercise.number: _exercise(env, exercise, "typ.j2")
+        for chapter in book.chapters
+        for exercise in chapter.paper
+    }
     names["exercise_numbers"] = _cited_exercises(book)
     names["ladder"] = any(section.drills or section.judgements for section in book.sections)
     names["machines"] = _machines(book)

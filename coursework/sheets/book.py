@@ -6,6 +6,7 @@ As in :mod:`coursework.sheets.sheet`, texts are Markdown with ``$LaTeX$``. Links
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -241,6 +242,16 @@ class BookChapter:
     title: str
     sections: tuple[BookSection, ...]
     summary: tuple[SummaryCard, ...] = ()
+    paper: tuple[BookExercise, ...] = ()  #: an examination paper on the chapter
+
+    @property
+    def paper_points(self) -> float:
+        return sum(one.handout.points for one in self.paper)
+
+    @property
+    def paper_minutes(self) -> int:
+        """The time of the paper, by half hours."""
+        return 30 * math.ceil(self.paper_points * _MINUTES / 30)
 
     @property
     def summary_columns(self) -> tuple[tuple[SummaryCard, ...], ...]:
@@ -351,6 +362,7 @@ class Book:
         return tuple(SymbolRow(*row, tuple(symbols[row])) for row in ordered)
 
 
+_MINUTES = 4  #: that a point of a paper takes
 _LONG = 60  #: rows of a table that takes two columns
 _MEASURED = ("number", "integer", "angle")  #: the kinds of a quantity
 _EXPRESSION = re.compile(r"[+/=]|(?<!dot) ")  #: a symbol that is none: a sum, a quotient, two points

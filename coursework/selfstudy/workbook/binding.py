@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
+from itertools import zip_longest
 from typing import Any
 
 from coursework.course.chapters import Chapter
@@ -25,6 +26,9 @@ from coursework.sheets.handout import handout
 
 _FAR = 500_000  #: seeds away from those of a class and of self-study: a book prints its solutions
 _APART = 1_000  #: seeds between two books
+_PAPER = 500  #: seeds between a book's exercises and those of its papers
+_PAPER_POINTS, _PAPER_MOST, _PAPER_EXERCISES = 20.0, 32.0, 4  #: a paper is long enough, and not too long
+_DRAWN = ("point", "point_on_line", "drawing")  #: kinds of what is drawn
 
 
 def bound(
@@ -138,12 +142,32 @@ def _chapter(
         sections.append(BookSection(lesson, tuple(exercises), title, drills, judgements))
     lessons = [section.lesson for section in sections if section.lesson]
     cards = tuple(filter(None, (summary_of(course.folder, lesson) for lesson in lessons)))
-    return BookChapter(chapter.number, chapter.title(lang), tuple(sections), cards)
+    paper = _paper(course, chapter, lang, seed) if course.folder.book_place.is_dir() else ()
+    return BookChapter(chapter.number, chapter.title(lang), tuple(sections), cards, paper)
 
 
-def _variant(exercise: CourseExercise[Variant], lang: str, seed: int) -> Variant:
-    """Return the first valid variant for a book."""
-    return distinct_variants(exercise, _FAR + _APART * seed, 1, lang)[0]
+def _paper(course: Course[Any], chapter: Chapter, lang: str, seed: int) -> tuple[BookExercise, ...]:
+    """Return an examination paper on a chapter: the last exercise of each section, then those before, with numbers of their own."""
+    rows = zip_longest(*(reversed(section.exercises) for section in chapter.sections))
+    chosen: list[BookExercise] = []
+    points = 0.0
+    for name in (name for row in rows for name in row if name):
+        if points >= _PAPER_POINTS or len(chosen) == _PAPER_EXERCISES:
+            break
+        variant = _variant(course[name], lang, seed, _PAPER)
+        sheet = handout(variant)
+        # What is drawn to scale needs half an hour for itself.
+        drawn = any(question.is_open or question.kind in _DRAWN for question in sheet.questions)
+        if drawn or sheet.drawing_mm or sheet.surface_mm or points + sheet.points > _PAPER_MOST:
+            continue
+        points += sheet.points
+        chosen.append(BookExercise(f"{chapter.number}.{len(chosen) + 1}", sheet, answer_sheet(variant)))
+    return tuple(chosen)
+
+
+def _variant(exercise: CourseExercise[Variant], lang: str, seed: int, further: int = 0) -> Variant:
+    """Return the first valid variant for a book, or a further one for its papers."""
+    return distinct_variants(exercise, _FAR + _APART * seed + further, 1, lang)[0]
 
 
 def _practised(course: Course[Any], name: str, lang: str, seed: int, number: str) -> BookExercise:

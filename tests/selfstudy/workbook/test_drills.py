@@ -97,6 +97,11 @@ def test_a_students_volume_has_odd_answers_and_the_teachers_all(small):
     assert "Theyarerigid." in told
     assert "Theyareround." not in told
     assert "Theyareround." in teacher
+    (chapter,) = book.chapters
+    assert [one.handout.seed % 1_000 for one in chapter.paper] == [500]
+    assert chapter.paper_minutes % 30 == 0
+    assert "Examinationpaper,chapter1" in told
+    assert "Examinationpaper,chapter1,1." in teacher
     without = "".join("".join(page_texts(renderer.book_pdf(bound(course, "en", solved=False)))).split())
     assert "Theyarerigid." not in without
 
