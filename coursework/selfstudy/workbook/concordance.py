@@ -36,16 +36,21 @@ def _entries(folder: Folder, lang: str) -> Iterator[SoughtEntry]:
             yield SoughtEntry("word", str(row[lang]), (str(row[lang]),))
     for row in folder.book_table("people").get("people", ()):
         name = str(row.get("alias", {}).get(lang, row["name"]))
-        yield SoughtEntry("word", person_entry(row), (name,))
+        yield SoughtEntry("word", person_entry(row, lang), (name,))
     for row in folder.book_table("machines").get("machines", ()):
         if lang in row:
             told = row.get("words", {}).get(lang, [row[lang]])
             yield SoughtEntry("machine", str(row[lang]), tuple(map(str, told)))
 
 
-def person_entry(row: Mapping[str, Any]) -> str:
+def person_name(row: Mapping[str, Any], lang: str) -> str:
+    """Return the name of a person, as a language writes it."""
+    return str(row.get("full_in", {}).get(lang, row["full"]))
+
+
+def person_entry(row: Mapping[str, Any], lang: str) -> str:
     """Return the entry of a person, the family name first."""
-    given, _, family = str(row["full"]).rpartition(" ")
+    given, _, family = person_name(row, lang).rpartition(" ")
     return f"{family}, {given}"
 
 

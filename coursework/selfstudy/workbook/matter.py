@@ -11,7 +11,7 @@ from coursework.course.lessons import read_text
 from coursework.errors import BadCourse, bare_letters
 from coursework.language.words import words
 from coursework.markup.links import TERM, links
-from coursework.selfstudy.workbook.concordance import person_entry
+from coursework.selfstudy.workbook.concordance import person_entry, person_name
 from coursework.selfstudy.workbook.lessons import parted
 from coursework.sheets.book import JointRow, JointsPiece, LessonText, Piece, ProsePiece, TablePiece, TitlePage
 
@@ -95,9 +95,9 @@ def _glossary(folder: Folder, stated: Mapping[str, Any], lang: str) -> tuple[Pie
 
 
 def _people(folder: Folder, stated: Mapping[str, Any], lang: str) -> tuple[Piece, ...]:
-    people = sorted(stated["people"], key=lambda row: bare_letters(row["full"].split()[-1]))
+    people = sorted(stated["people"], key=lambda row: bare_letters(person_entry(row, lang)))
     lines = (
-        f'- **[{row["full"]}](#word "{person_entry(row)}")** ({row["years"]}). {_capital(row[lang])}'
+        f'- **[{person_name(row, lang)}](#word "{person_entry(row, lang)}")** ({row["years"]}). {_capital(row[lang])}'
         for row in people
     )
     return (ProsePiece("\n".join(lines)),)
