@@ -9,7 +9,7 @@ from fractions import Fraction
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from coursework.errors import BadInput
+from coursework.errors import BadInput, bare_letters
 from coursework.gradebook.changes import rows_of
 from coursework.gradebook.class_points import Scored, class_points, issued_near
 from coursework.gradebook.scale import USUAL_SCALE, exact
@@ -144,7 +144,7 @@ def semester(assignments: Sequence[Assessed]) -> list[SemesterLine]:
             line.number = line.number or next((v for t, v in scored.ids if is_called(t, NUMBER)), "")
             line.group = line.group or assignment.groups.get(folded(scored.name), "")
             line.results[assignment.name] = assignment.result(scored)
-    return sorted(lines, key=lambda line: folded(line.name))
+    return sorted(lines, key=lambda line: bare_letters(line.name))
 
 
 def average(line: SemesterLine, assignments: Sequence[Assessed], absence: str) -> Fraction | None:
