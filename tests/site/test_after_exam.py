@@ -42,7 +42,7 @@ def test_a_change_is_previewed_kept_and_taken_back(desk):
     assert (points(desk), steps_of(desk)) == (before, ())
     browser = desk.browser(TEACHER)
     reply = browser.fill(f"/desk/{desk.number}/after", {"do": "confirm", **asked})
-    assert "Kept. Question 1.1: worth 9 points" in reply.text
+    assert "Saved. Question 1.1: worth 9 points" in reply.text
     (step,) = steps_of(desk)
     assert (step.student, step.kind, step.points, step.by, step.reason) == (
         "",

@@ -24,11 +24,13 @@ from coursework.gradebook.adjustments import (
 )
 from coursework.gradebook.after import Exam, Preview, step, undoing
 from coursework.gradebook.decisions import ACCEPTED, GIVEN, Decision
+from coursework.gradebook.statistics.captions import Names
 from coursework.language.numbers import localise, typed_number
 from coursework.language.words import words
 from coursework.messages import localised
 from coursework.site.desk.class_cache import class_here, class_now, class_page_of
 from coursework.site.desk.question_cards import moment
+from coursework.site.desk.question_page import statistics_of
 from coursework.site.frame.requests import Request, Route
 
 OFFERED = (*ADJUSTMENTS, ACCEPTED, GIVEN)  #: changes that the form offers
@@ -124,6 +126,8 @@ def _page(request: Request, now: ClassState, fields: Mapping[str, str], message:
             fields = {**fields, "text": after_words.step_text(exam, change, lang)}
         except BadInput as fault:
             message = message or localised(fault)
+    names_of = Names(now.course, statistics_of(now), lang)
+    captions = {(one.exercise, one.part): names_of.question(one) for one in exam.table}
     current = exam.distribution()
     steps = exam.decisions.standing_steps
     names: dict[str, Any] = {
@@ -138,6 +142,7 @@ def _page(request: Request, now: ClassState, fields: Mapping[str, str], message:
             for one in steps
         ],
         "offered": OFFERED,
+        "caption": lambda question: captions[question.exercise, question.part],
         "number": lambda value: after_words.number(value, lang),
         "share": lambda value: localise(f"{value:.2f}", lang),
         "points_text": lambda question: after_words.points_text(question, lang),
