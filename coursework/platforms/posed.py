@@ -16,7 +16,7 @@ from coursework.kinds.ticks import cost_of_wrong
 from coursework.language.numbers import plain, settled, significant
 from coursework.marking.diagnosis import CLOSE
 from coursework.marking.marking import mark_alone
-from coursework.marking.usual import NEAR
+from coursework.marking.usual import NEAR, NEAR_HERE
 from coursework.model import Part
 from coursework.sheets.sheet import Question
 
@@ -250,9 +250,10 @@ def _turned(interval: Interval, part: Part) -> Iterator[Interval]:
 def _wrong_values(key: Key, part: Part) -> Iterator[tuple[float, float]]:
     """Yield the values that named mistakes give, then those of slips, each with the half-width in which marking names them."""
     width = key.envelope.get(part.quantity, 0.0)
-    for _, value in key.wrong_ways(part.quantity):
+    for name, value in key.wrong_ways(part.quantity):
+        near = NEAR_HERE if part.quantity in key.solution.mistakes[name].targets else NEAR
         if isinstance(value, (int, float)) and math.isfinite(value):
-            yield float(value), 0.0 if part.is_exact else NEAR * max(part.half_width(value), width)
+            yield float(value), 0.0 if part.is_exact else near * max(part.half_width(value), width)
     reference = float(key.reference[part.quantity])
     for slip in key.slips(part):
         yield slip.made(reference), NEAR * abs(slip.made(1.0)) * key.half_width(part)
