@@ -1,5 +1,5 @@
 # Two commands do the job on a machine with Python and make: `make demo` and `make test`. `make site` opens the site,
-# `make docs` builds the pages, `make test-all` runs the long ends of the sweeps as well, `make test-share` a part in 32 of them.
+# `make docs` builds the pages, `make test-all` runs the long ends of the sweeps as well, `make test-share` a share of them.
 # PYTHON chooses the interpreter, at least 3.11.
 
 PYTHON ?= $(shell for p in python3 python3.13 python3.12 python3.11 python; do \
@@ -50,11 +50,11 @@ test: $(VENV)/ready-test style  ## Every promise on a handful of exercises and o
 test-all: $(VENV)/ready-test $(VENV)/ready-e2e style  ## Every test, sweeps at full length
 	$(PYTEST)
 
-# Each commit names one of thirty-two shares by its own digits.
-SHARE ?= $(shell printf '%d/32' "$$((0x$$(git rev-parse --short=7 HEAD) % 32))")
+# Each commit names one of sixty-four shares by its own digits.
+SHARE ?= $(shell printf '%d/64' "$$((0x$$(git rev-parse --short=7 HEAD) % 64))")
 
-# What test has, all with other programs, a sixteenth of the sweeps over exercises and a part in 32 of their long ends. Tests
-# with other programs wait for these: there is one worker more than processors.
+# What test has, a quarter of the whole commands and of the tests with other programs, a part in 32 of the sweeps over exercises
+# and one in 64 of their long ends. Tests with other programs wait for these: there is one worker more than processors.
 test-share: $(VENV)/ready-test $(VENV)/ready-e2e style  ## Every promise, and a share of the sweeps that changes with each commit
 	$(subst auto,$$(($$(getconf _NPROCESSORS_ONLN) + 1)),$(PYTEST)) --share $(SHARE)
 

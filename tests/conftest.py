@@ -24,6 +24,7 @@ MEMORY = Path("/dev/shm")  #: files that are in memory, where a system has such 
 _PREFIX = "coursework-tests-"  #: of their names, before the process that writes
 ROOM = 6 << 30  #: bytes that must be free there, and of memory
 _PLACE = pytest.StashKey[str]()
+_PARTS = {"sweep": 2, "e2e": 16}  #: parts of the shares of slow tests that make one of these tests
 
 # What a run finds another finds as well; `--hypothesis-profile searching` looks elsewhere each time.
 settings.register_profile("same", derandomize=True, deadline=None, print_blob=True)
@@ -36,7 +37,7 @@ def pytest_addoption(parser):
         "--share",
         metavar="K/N",
         default="0/1",
-        help="run the K-th of N shares of the slow tests, K from 0 on, and one of N/2 shares of the sweeps",
+        help="run the K-th of N shares of the slow tests, K from 0 on, one of N/2 shares of the sweeps, one of N/16 of the whole commands",
     )
 
 
@@ -72,7 +73,7 @@ def pytest_collection_modifyitems(config, items):
     others = {
         item
         for item in items
-        if crc32(item.nodeid.encode()) % _shares_of(item, shares) != share % _shares_of(item, shares)
+        if crc32(_drawn_by(item).encode()) % _shares_of(item, shares) != share % _shares_of(item, shares)
     }
     config.hook.pytest_deselected(items=[*others])
     items[:] = [item for item in items if item not in others]
@@ -82,7 +83,14 @@ def _shares_of(item, shares):
     """Return how many shares the tests of the item's sort are split into."""
     if item.get_closest_marker("slow"):
         return shares
-    return max(1, shares // 2) if item.get_closest_marker("sweep") else 1
+    return max(
+        1, shares // next((part for sort, part in _PARTS.items() if item.get_closest_marker(sort)), shares)
+    )
+
+
+def _drawn_by(item):
+    """Return the text that decides on a test's share: whole commands and browsers of one file share what they build."""
+    return item.nodeid.partition("::")[0] if item.get_closest_marker("e2e") else item.nodeid
 
 
 def pytest_collection_finish(session):

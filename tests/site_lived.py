@@ -107,6 +107,7 @@ def shown(site: Lived) -> list[Shown]:
     staff = (
         ("/desk", "/desk"),
         ("/desk/people", "/desk/people"),
+        ("/desk/semester", "/desk/semester"),
         ("/desk/people/{person}", f"/desk/people/{own}"),
         ("/desk/people/{person}/erase", f"/desk/people/{own}/erase"),
         ("/desk/audit", "/desk/audit"),
@@ -155,7 +156,8 @@ NO_PAGES = frozenset(
         "/", "/language", "/who", "/sign-out", "/account/data", "/service-worker.js", "/static/{name}", "/assignments/{number:int}/read-back", "/practice/{exercise}", "/practice/{exercise}/{seed}/draft",
         "/practice/{exercise}/{seed}/read", "/lessons/{lesson}/figures/{figure}", "/progress/progress.json", "/assignments/{number:int}/keep", "/assignments/{number:int}/hand-in",
         "/assignments/{number:int}/file", "/assignments/{number:int}/{file}", "/assignments/{number:int}/receipts/{code}.{ending}", "/desk/issued",
-        "/desk/people/add", "/desk/people/add-staff", "/desk/people/{person}/data",
+        "/assignments/{number:int}/start",
+        "/desk/people/add", "/desk/people/add-staff", "/desk/people/extra-time", "/desk/people/{person}/data", "/desk/semester.csv",
         *(f"/desk/people/{{person}}/{end}" for end in ("invitation", "role", "separate")), "/desk/assignments/dealing/{token}", "/desk/{assignment:int}/figure",
         "/desk/{assignment:int}/queue/watch", "/desk/{assignment:int}/news", "/desk/{assignment:int}/report.pdf", "/desk/{assignment:int}/answers",
         "/desk/{assignment:int}/roster", "/desk/{assignment:int}/gradebook", "/desk/{assignment:int}/feedback", "/desk/{assignment:int}/rejected",

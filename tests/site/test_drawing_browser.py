@@ -10,6 +10,7 @@ from site_assignments import ASSIGNMENT, dealt
 from site_browser import WIDTHS, context_of, desk_at, low, serious, told, too_wide, watched
 from site_pencil import Draughtsman
 from site_people import ZOE
+from site_server import until
 
 import coursework
 from coursework.figures.student_drawing import StudentDrawing
@@ -168,7 +169,7 @@ def test_what_another_page_wrote_is_drawn_once_it_is_taken(pencil):
     drawing, point = ("[data-other=a-drawing]", "[data-other=a-p]")
     other.locator(f"{drawing} >> text=Keep mine").click()
     other.locator(f"{point} >> text=Take that").click()
-    assert (cells(other, "a-p"), other.input_value("[name=a-p]")) == (["20", "30"], "(20 ; 30)")
+    until(lambda: (cells(other, "a-p"), other.input_value("[name=a-p]")) == (["20", "30"], "(20 ; 30)"))
     assert [(one["x"], one["y"]) for one in drawn_items(other, "a-drawing")] == [(20, 30)]
 
 
