@@ -10,7 +10,8 @@ from __future__ import annotations
 import inspect
 import re
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
+from concurrent.futures import ProcessPoolExecutor
 from html import escape
 from pathlib import Path
 
@@ -39,23 +40,27 @@ def pages(course: Course) -> Iterator[tuple[str, bytes]]:
     """Every file of the gallery: its name, its content."""
     yield "index.md", index(course).encode()
     for name in course.folder.in_order:
-        exercise = course[name]
-        for lang in exercise.languages:
-            sheet = renderer_of(course.folder).typst(exercise.variant(SEED, lang).handout())
-            yield f"{name}.{lang}.png", first_page(sheet)
-        figure = exercise.variant(SEED, exercise.languages[0]).figure
-        if figure is not None:
-            yield f"{name}.svg", figure.outlined_svg().encode()
-        for file, made in attached(exercise):
-            yield file, made.encode()
-        yield f"{name}.md", page(exercise).encode()
+        yield from exercise_files(course, name)
 
 
-def workbook(course: Course) -> Iterator[tuple[str, bytes]]:
-    """The pages of the workbook in every language, whole pages that stand alone."""
-    for lang in course.folder.languages:
-        for file, make in renderer_of(course.folder).book_pages(bound(course, lang)).items():
-            yield f"{WHOLE}/workbook-{lang}/{file}", make().encode()
+def exercise_files(course: Course, name: str) -> Iterator[tuple[str, bytes]]:
+    """The files of one exercise."""
+    exercise = course[name]
+    for lang in exercise.languages:
+        sheet = renderer_of(course.folder).typst(exercise.variant(SEED, lang).handout())
+        yield f"{name}.{lang}.png", first_page(sheet)
+    figure = exercise.variant(SEED, exercise.languages[0]).figure
+    if figure is not None:
+        yield f"{name}.svg", figure.outlined_svg().encode()
+    for file, made in attached(exercise):
+        yield file, made.encode()
+    yield f"{name}.md", page(exercise).encode()
+
+
+def workbook(course: Course, lang: str) -> Iterator[tuple[str, bytes]]:
+    """The pages of the workbook in one language, whole pages that stand alone."""
+    for file, make in renderer_of(course.folder).book_pages(bound(course, lang)).items():
+        yield f"{WHOLE}/workbook-{lang}/{file}", make().encode()
 
 
 def attached(exercise: CourseExercise) -> Iterator[tuple[str, str]]:
@@ -244,13 +249,28 @@ def _html(text: str) -> str:
     return f"````{{raw}} html\n{text}\n````"
 
 
-def main(folder: str) -> None:
-    target = Path(folder)
-    target.mkdir(parents=True, exist_ok=True)
-    course = coursework.open_course()
-    for name, content in (*pages(course), *workbook(course)):
+def write(target: Path, files: Iterable[tuple[str, bytes]]) -> None:
+    for name, content in files:
         (target / name).parent.mkdir(parents=True, exist_ok=True)
         (target / name).write_bytes(content)
+
+
+def write_exercise(target: Path, name: str) -> None:
+    write(target, exercise_files(coursework.open_course(), name))
+
+
+def write_workbook(target: Path, lang: str) -> None:
+    write(target, workbook(coursework.open_course(), lang))
+
+
+def main(folder: str) -> None:
+    target, course = Path(folder), coursework.open_course()
+    write(target, [("index.md", index(course).encode())])
+    with ProcessPoolExecutor() as pool:  # the workbooks take longest, so they are begun first
+        jobs = [pool.submit(write_workbook, target, lang) for lang in course.folder.languages]
+        jobs += [pool.submit(write_exercise, target, name) for name in course.folder.in_order]
+        for job in jobs:
+            job.result()
 
 
 if __name__ == "__main__":

@@ -13,6 +13,7 @@ from pathlib import Path
 import click
 import pytest
 from class_of_three import filled, table, write_rows
+from pygments.lexers import get_all_lexers
 from tables import each_row
 
 import coursework
@@ -121,6 +122,16 @@ def test_every_page_is_in_the_table_of_contents(folder):
     below = {f"{p.parent.name}/index" for p in folder.glob("*/index.md")}
     made = {"gallery/index"} if folder == DOCS else set()
     assert {p.stem for p in folder.glob("*.md")} - {"index"} | below | made == listed(folder / "index.md")
+
+
+def test_every_block_of_the_pages_is_in_a_language_that_can_be_coloured():
+    known = {"answer", *(alias for _, aliases, _, _ in get_all_lexers() for alias in aliases)}
+    named = {
+        (page.name, lang)
+        for page in DOCS.rglob("*.md")
+        for lang in re.findall(r"^```(\w+)$", page.read_text("utf-8"), re.MULTILINE)
+    }
+    assert [(page, lang) for page, lang in sorted(named) if lang not in known] == []
 
 
 def test_the_site_names_no_other_place():
@@ -364,8 +375,8 @@ def test_every_picture_and_page_that_the_gallery_points_to_is_made(name):
 
 @pytest.mark.slow
 def test_the_pages_of_the_workbook_are_made_for_every_lesson_and_exercise():
-    made = {file for file, _ in gallery().workbook(COURSE)}
     for lang in COURSE.folder.languages:
+        made = {file for file, _ in gallery().workbook(COURSE, lang)}
         for one in (*COURSE.folder.lessons, *COURSE.names, "index"):
             assert f"whole/pages/workbook-{lang}/{one}.html" in made
 
