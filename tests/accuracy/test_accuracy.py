@@ -94,6 +94,7 @@ def test_precisions_are_told_apart(rows, name):
 
 
 @each_studied
+@pytest.mark.e2e
 def test_newton_squares_its_error_where_the_solutions_are_apart(rows, name):
     first, second, third = (error(rows[name], "position", f"newton-{k}") for k in (1, 2, 3))
     assert second < 10 * first**2
@@ -137,6 +138,7 @@ def test_with_friction_tolerances_and_steps_come_near_too(rubbing, course):
     assert "avec frottement" in section.text
 
 
+@pytest.mark.e2e
 def test_motion_by_tolerance_is_as_exact_as_it_is_told_to_be(free):
     loose, *_, tight = (row.error for row in free if row.method == "integration")
     assert loose > 1e-5

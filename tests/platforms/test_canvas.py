@@ -72,6 +72,7 @@ def test_a_student_gets_each_question_once_and_all_points(drawn, lang):
 
 
 @each_row("lang", LANGS)
+@pytest.mark.e2e
 def test_numbers_are_taken_as_we_take_them(drawn, lang):
     tried = 0
     for one, variant, part in questions(drawn, lang):

@@ -220,6 +220,7 @@ def test_only_the_students_own_pdfs_differ_from_a_build_without(built):
     assert differ - {".built.json"} == {n for n in plain if n.startswith("handouts/") and n.endswith(".pdf")}
 
 
+@pytest.mark.e2e
 def test_every_code_of_a_build_is_found_again_from_what_was_issued(built, course):
     papers = answer_papers(json.loads((built / "scan" / "issued.json").read_text("utf-8")))
     on_a4 = {code: paper for code, paper in papers.items() if paper.size == "a4"}

@@ -85,6 +85,7 @@ def test_nor_has_a_paper(pages_of_questions, size, lang):
     assert start == len(pages)
 
 
+@pytest.mark.e2e
 def test_questions_too_tall_to_stay_together_take_the_pages_that_they_need(pages_of_questions):
     sheet = handout("en")
     tall = [

@@ -116,6 +116,7 @@ def test_a_lesson_stands_on_the_site_with_its_figures_and_leads_to_its_exercises
 
 
 @each_row("address", ["no_such", "positions/figures/none.svg", "no_such/figures/none.svg"])
+@pytest.mark.e2e
 def test_other_addresses_of_lessons_lead_nowhere(zoe, address):
     assert zoe.get(f"/lessons/{address}").status_code == 404
 

@@ -206,6 +206,7 @@ def test_no_form_is_taken_from_elsewhere(site, page):
 
 
 @every_page
+@pytest.mark.e2e
 def test_every_reply_says_what_a_browser_may_do_with_it(replies, page):
     for reply in (*replies(page).shown.values(), *replies(page).odd):
         assert faults_of(reply, POLICY) == [], reply.request

@@ -308,6 +308,7 @@ def test_in_the_film_the_drawn_ball_slips_at_none_of_its_four_contacts(seed):
 
 
 @FILMS
+@pytest.mark.e2e
 def test_in_the_film_contacts_run_equal_arcs_on_the_two_bodies_that_roll(seed):
     _, frames, A_3 = drawn(seed)
     R, r = (EXERCISE.variant(seed).given[n] for n in ("R", "r"))
