@@ -61,6 +61,7 @@ def x_B(r2, theta2, q):
     return polar(r2, theta2).real + q
 
 
+@stable(lambda r2, theta2, p, q: polar(r2, theta2).imag - polar(r2, theta2).real * p / q)
 def y24(e, x_B, theta3):
     """On the line of the rod, at the abscissa of O."""
     return e - x_B * tan(theta3)
