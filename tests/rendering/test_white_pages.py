@@ -11,14 +11,6 @@ from coursework.rendering.renderer import renderer_of
 
 RENDERER = renderer_of(COURSE.folder)
 MOST = 0.25
-#: Papers that are known to break the promise.
-OPEN = {
-    25: [
-        pytest.mark.xfail(
-            reason="before two figures of positions that are asked a third of a page stays white"
-        )
-    ]
-}
 
 
 def white(page) -> float:
@@ -29,7 +21,7 @@ def white(page) -> float:
 
 
 @pytest.mark.parametrize(
-    "seed", [1, 4, 28, 38, *(pytest.param(k, marks=[pytest.mark.slow, *OPEN.get(k, ())]) for k in range(40))]
+    "seed", [1, 4, 28, 38, *(pytest.param(k, marks=pytest.mark.slow) for k in range(40))]
 )
 def test_no_page_but_the_last_is_white_by_more_than_a_quarter(seed):
     names = tuple(random.Random(seed).sample(COURSE.names, 4))
