@@ -400,8 +400,7 @@ class CompiledLinkage:
         linkage, formulas = self.linkage, self.formulas
         ground = ", ".join(f"{p!r}: {_place(place)}" for p, place in linkage.ground.items())
         bodies = []
-        held = set(linkage.ground)
-        jack = linkage.driver if linkage.drive.kind == "jack" else ""
+        held, jack = set(linkage.ground), linkage.jack
         for name in formulas.order:
             if name in (GROUND, jack):
                 continue
@@ -457,10 +456,8 @@ class CompiledLinkage:
     def _holder(self, body: str) -> str:
         """Return the point of a body that the ground or a body placed before it holds; none where slides alone hold it."""
         order = self.formulas.order
-        jack = self.linkage.driver if self.linkage.drive.kind == "jack" else ""
-        before = [
-            b for b in order[: order.index(body)] if b != jack
-        ]  # which holds nothing: its length varies
+        # A jack holds nothing: its length varies.
+        before = [b for b in order[: order.index(body)] if b != self.linkage.jack]
         points = self.linkage.bodies[body].points
         return next((p for p in points if set(self.linkage.holders(p)) & set(before)), "")
 
@@ -470,10 +467,10 @@ class CompiledLinkage:
             f"SlideTrack({s.at!r}, {s.of!r}, {s.on!r}, {_place(s.through)}, {_code(s.along)}, {s.distance!r}), "
             for s in linkage.slides.values()
         ]
-        if linkage.drive.kind == "jack":
-            end = [*linkage.bodies[linkage.driver].points][1]
+        if linkage.jack:
+            end = [*linkage.bodies[linkage.jack].points][1]
             tracks.append(
-                f"SlideTrack({end!r}, {linkage.drive.rod!r}, {linkage.driver!r}, 0.0, 0.0, {linkage.moved!r}), "
+                f"SlideTrack({end!r}, {linkage.drive.rod!r}, {linkage.jack!r}, 0.0, 0.0, {linkage.moved!r}), "
             )
         return tracks
 

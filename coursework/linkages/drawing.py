@@ -31,7 +31,7 @@ class FigureWriter:
         }
         self._ground()
         for body in self.linkage.bodies:
-            if self.linkage.drive.kind == "jack" and body == self.linkage.driver:
+            if body == self.linkage.jack:
                 self._jack(body)
             else:
                 self._body(body)
@@ -178,7 +178,7 @@ class FigureWriter:
                     self._add(f"circle({self._at(shared[0])}, {radius.code}, dashed=True)")
 
     def _driver(self) -> None:
-        if self.linkage.drive.kind == "jack":
+        if self.linkage.jack:
             return
         if self.linkage.drive.kind == "slide":
             slide = self.linkage.slides[self.linkage.slides_driven]

@@ -194,6 +194,11 @@ class LinkageFile:
         return self.drive.body
 
     @property
+    def jack(self) -> str:
+        """The body that is the driving jack; '' for any other driver."""
+        return self.drive.body if self.drive.kind == "jack" else ""
+
+    @property
     def moved(self) -> str:
         """The quantity of the driver: an angle, or a length."""
         return self.drive.moved
@@ -202,7 +207,7 @@ class LinkageFile:
     def counts(self) -> tuple[int, int, int]:
         """Moving bodies, pins and slides, and contacts of teeth; a jack is two bodies and the slide between them."""
         pins = sum(len(bodies) - 1 for bodies in self.pins.values())
-        jack = int(self.drive.kind == "jack")
+        jack = int(bool(self.jack))
         return len(self.bodies) + jack, pins + len(self.slides) + jack, len(self.gears)
 
     @property

@@ -24,7 +24,7 @@ def keep_digits(writer: FormulaWriter) -> None:
         The writer, with all quantities of the mechanism.
     """
     for group in writer.groups:
-        if _is_jack(writer, *group.bodies):
+        if writer.linkage.jack in group.bodies:
             continue
         if isinstance(group, Dyad) and group.kind == "RRR":
             to_p = writer.arm(group.p, str(group.outer_p), str(group.inner))
@@ -139,14 +139,9 @@ def _crank(writer: FormulaWriter, point: str) -> tuple[str, str, Arm] | None:
     if point in writer.linkage.ground:
         return None
     body, pivot = writer.carrier(point)
-    if pivot not in writer.linkage.ground or pivot == point or _is_jack(writer, body):
+    if pivot not in writer.linkage.ground or pivot == point or body == writer.linkage.jack:
         return None
     return body, pivot, writer.arm(body, pivot, point)
-
-
-def _is_jack(writer: FormulaWriter, *bodies: str) -> bool:
-    """Return whether one of the bodies is a jack, whose length varies."""
-    return writer.linkage.drive.kind == "jack" and writer.linkage.driver in bodies
 
 
 def _direction(arm: Arm) -> str:

@@ -168,7 +168,7 @@ class FormulaWriter(HigherGroupWriter):
         rates, gains = f"_rates_{B}", f"_gains_{B}"
         v_p, v_q = self._own(P, p, to_p, "v"), self._own(Q, q, to_q, "v")
         self.hide(rates, f"dyads.rrr_rates({arms}, ({v_p.complex},), ({v_q.complex},))")
-        jack = "_jack" if self.linkage.driver in group.bodies else ""
+        jack = "_jack" if self.linkage.jack in group.bodies else ""
 
         def apart(kind: str) -> tuple[Sum, Sum]:
             """Return what the rates of one end have more than those of the other, along ``q`` and along ``p``."""

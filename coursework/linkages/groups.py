@@ -78,8 +78,7 @@ def groups_of(linkage: LinkageFile) -> tuple[tuple[Group, ...], int]:
     decomposition = _decomposition(linkage, wheels)
     numbers = _numbers(linkage, wheels)
     names = {number: name for name, number in numbers.items() if name not in wheels}
-    jack = linkage.drive.kind == "jack"
-    placed = [GROUND] if jack else [GROUND, linkage.driver]
+    placed = [GROUND] if linkage.jack else [GROUND, linkage.driver]
     groups: list[Group] = []
     waiting = list(decomposition.groups) if decomposition else []
     while waiting or wheels:
@@ -174,7 +173,7 @@ def _decomposition(linkage: LinkageFile, wheels: dict[str, Wheel]) -> Decomposit
     if max(numbers.values()) == 2:
         return None
     driver = numbers[linkage.driver]
-    if linkage.drive.kind == "jack":  # a bar of its length, while a crank that moves nothing drives
+    if linkage.jack:  # a bar of its length, while a crank that moves nothing drives
         driver = max(numbers.values()) + 1
         records.append({"between": [1, driver], "kind": "revolute", "at": "drive"})
     try:

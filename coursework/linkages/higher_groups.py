@@ -73,7 +73,7 @@ class HigherGroupWriter(LoopWriter):
                 own = [self._motion(name[1:], kind) for kind in ("v", "a")[:order]]
                 codes = ", ".join((v.x if name[0] == "x" else v.y).code for v in own)
                 pairs.append(f"{name}=({codes},)")
-            if linkage.drive.kind == "jack" and linkage.driver in group.bodies:
+            if linkage.jack in group.bodies:
                 codes = ", ".join((linkage.drive.rates[0], linkage.acceleration or "0.0")[:order])
                 pairs.append(f"{linkage.moved}=({codes},)")
             hidden = self.hide(
@@ -262,7 +262,7 @@ class HigherGroupWriter(LoopWriter):
         """Coordinates of the points that the driver places, by what is given."""
         linkage = self.linkage
         driver, points = linkage.driver, linkage.bodies[linkage.driver].points
-        if linkage.drive.kind == "jack":
+        if linkage.jack:
             return {}
         start = linkage.bodies[driver].at
         base = self.local(start, GROUND) if linkage.drive.kind == "turn" else Plane()

@@ -40,7 +40,7 @@ def linkage_faults(linkage: LinkageFile) -> Iterator[BadInput]:
             ),
         )
     for name, joints in hold.items():
-        drives = name == linkage.driver and linkage.drive.kind != "jack"
+        drives = name == linkage.driver and not linkage.jack
         if len(joints) < 2 and not drives and name not in geared:
             yield linkage.refused(
                 ("bodies", name),

@@ -377,7 +377,7 @@ class PointWriter:
         """Return the velocity, or the acceleration, that the driving jack adds over an arm as it grows, in axes turned by a direction;
         nothing for any other body."""
         linkage = self.linkage
-        if linkage.drive.kind != "jack" or body != linkage.driver or arm.length.vanishes:
+        if body != linkage.jack or arm.length.vanishes:
             return Plane()
         speed, turn = linkage.drive.rates[0], arm.heading - (heading or Heading())
         if kind == "v":

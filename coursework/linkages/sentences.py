@@ -89,7 +89,7 @@ class SentenceWriter:
             return self.tables["body"]["frame"]
         points = [*self.linkage.bodies[name].points]
         drives = name == self.linkage.driver
-        if drives and self.linkage.drive.kind == "jack":
+        if name == self.linkage.jack:
             return self.tables["body"]["jack"].replace("<points>", "".join(map(point_latex, points)))
         if any(name in (g.first, g.second) for g in self.linkage.gears) and len(points) == 1:
             kind = "wheel"
@@ -276,7 +276,7 @@ def _body(writer: SentenceWriter, name: str) -> str:
         return writer.sentence("statement", kind, {"B": start, "name": name})
     words = {"P": start, "name": name, "angle": formulas.symbol(formulas.turns[name])}
     drive = linkage.drive
-    if name == linkage.driver and drive.kind == "jack":
+    if name == linkage.jack:
         limits = [formulas.symbol(n) for n in drive.limits if n]
         travel = (
             writer.sentence("statement", "travel", dict(zip("mM", limits, strict=True))) if limits else ""
