@@ -84,9 +84,7 @@ def with_titles(text: str, titles: Sequence[tuple[str, str]]) -> str:
 def questions(made: CompiledLinkage) -> dict[str, list[CheckBox]]:
     """Return what can be asked of a mechanism, by key of ``[ask]``, and what is."""
     linkage, formulas = made.linkage, made.formulas
-    turns = [
-        t for t in dict.fromkeys(formulas.turns.values()) if t.startswith("theta") and t != linkage.moved
-    ]
+    turns = [*formulas.followed_turns]
     points = [p for p in linkage.points if p not in linkage.ground]
     slides = [s.distance for s in linkage.followed_slides]
     able: dict[str, Sequence[str]] = {

@@ -143,9 +143,7 @@ def report(exercise: CourseExercise[Any], made: CompiledLinkage, seed: int) -> l
         around = 0.5 * given[linkage.moved], 1.5 * given[linkage.moved]
         low, high = (given[n] if n else end for n, end in zip(linkage.drive.limits, around, strict=True))
         places, unit = np.linspace(low, high, 361), " mm"
-    names = [
-        t for t in dict.fromkeys(formulas.turns.values()) if t.startswith("theta") and t != linkage.moved
-    ]
+    names = [*formulas.followed_turns]
     distances = [s.distance for s in linkage.followed_slides]
     found = (
         exercise.solve(only=[*names, *distances], **{**given, linkage.moved: places})

@@ -77,7 +77,7 @@ class CompiledLinkage:
         _ = self.questions  # which add their quantities
         conditions, constants = self._constraints()
         drawn = names_in(figure.code.replace("\n", " "))
-        wanted = [*drawn, *self._turns]
+        wanted = [*drawn, *self.formulas.followed_turns]
         helpers = [q for q in self.formulas.transitive(wanted) if q.name not in self.linkage.given]
         chains = [f"{n} = {code}" for n, code in self.formulas.constants.items()]
         pieces = [
@@ -158,20 +158,17 @@ class CompiledLinkage:
             f"    return {{{moved!r}: length_at(lambda: ({graph}), {angle!r}, {moved!r}, driven, ({', '.join(limits)}), dict({values}))}}"
         )
 
-    @property
-    def _turns(self) -> tuple[str, ...]:
-        """Angles that follow from the driver's."""
-        turns = dict.fromkeys(self.formulas.turns.values())
-        return tuple(t for t in turns if t.startswith("theta") and t != self.linkage.moved)
-
     def _constraints(self) -> tuple[list[tuple[str, str]], str]:
         """Return the constraints, names with code, and what of the module they need."""
         linkage, formulas = self.linkage, self.formulas
         results: list[tuple[str, str]] = []
         helpers = ""
-        if self._turns:
+        if self.formulas.followed_turns:
             results.append(
-                _condition("the_mechanism_closes", " & ".join(f"np.isfinite({t})" for t in self._turns))
+                _condition(
+                    "the_mechanism_closes",
+                    " & ".join(f"np.isfinite({t})" for t in self.formulas.followed_turns),
+                )
             )
         varies = any(entry.value is None for entry in linkage.given.values()) or any(
             e.is_drawn for e in formulas.modes.values()
@@ -214,11 +211,11 @@ class CompiledLinkage:
             name = f"required_{number + 1}"
             results.append(_condition(name, found.code))
         if any("crank_turns" in code for _, code in results):
-            leaves = [n for n in self._leaves(self._turns) if n != linkage.moved]
-            graph = "".join(f"{q.name}, " for q in formulas.transitive(self._turns))
+            leaves = [n for n in self._leaves(self.formulas.followed_turns) if n != linkage.moved]
+            graph = "".join(f"{q.name}, " for q in formulas.transitive(self.formulas.followed_turns))
             helpers = (
                 f"def crank_turns({', '.join(leaves)}):\n"
-                f"    return turns_round(lambda: ({graph}), {self._turns!r}, {linkage.moved!r}, dict({', '.join(f'{n}={n}' for n in leaves)}))"
+                f"    return turns_round(lambda: ({graph}), {self.formulas.followed_turns!r}, {linkage.moved!r}, dict({', '.join(f'{n}={n}' for n in leaves)}))"
             )
         modes = [f"other_assembly_{p}" for p in formulas.modes]
         numbers = [
@@ -366,7 +363,7 @@ class CompiledLinkage:
     def _residual(self) -> str:
         """Return the code of the residual: joints and their rates, from the frames of the bodies."""
         linkage, formulas = self.linkage, self.formulas
-        names = dict.fromkeys([*formulas.geometry, linkage.moved, *self._turns])
+        names = dict.fromkeys([*formulas.geometry, linkage.moved, *self.formulas.followed_turns])
         slides = [linkage.moved, *(s.distance for s in linkage.slides.values())]
         names |= dict.fromkeys(
             [
@@ -387,7 +384,7 @@ class CompiledLinkage:
             order = 2
         stems = ("", "omega", "alpha")[1 : order + 1]
         for stem in stems:
-            names |= dict.fromkeys(t.replace("theta", stem, 1) for t in self._turns)
+            names |= dict.fromkeys(t.replace("theta", stem, 1) for t in self.formulas.followed_turns)
         names |= dict.fromkeys(n for n in linkage.drive.rates[:order] if n in linkage.given)
         names |= dict.fromkeys(
             f"{kind}_{point}_{axis}" for point in free for kind in "va"[:order] for axis in "xy"

@@ -183,6 +183,12 @@ class PointWriter:
         self._name_turns()
         self._place_driver()
 
+    @property
+    def followed_turns(self) -> tuple[str, ...]:
+        """Angles that follow from the driver's, each once."""
+        turns = dict.fromkeys(self.turns.values())
+        return tuple(t for t in turns if t.startswith("theta") and t != self.linkage.moved)
+
     def _name_turns(self) -> None:
         """Give each body the quantity, or the constant, that turns it; bodies that slide on each other share it."""
         linkage = self.linkage

@@ -149,7 +149,7 @@ class QuestionWriter:
             at = ("ask", "positions")
             if name in self._moving_points:
                 self._vector(name, self.formulas.at(name), "mm", "point", name, "point")
-            elif name in self._turns:
+            elif name in self.formulas.followed_turns:
                 self._ask(name, "angle", self._turn_words(name), unit='"deg"', kind='"angle"')
             elif name in self._slides or re.fullmatch(r"[xy][A-Z]\d*", name):
                 self._known(name, at)
@@ -161,7 +161,7 @@ class QuestionWriter:
                     unit='"mm"',
                 )
             else:
-                self._unknown(name, at, [*self._turns, *self._moving_points, *self._slides])
+                self._unknown(name, at, [*self.formulas.followed_turns, *self._moving_points, *self._slides])
 
     def _velocities(self, names: list[str]) -> None:
         self._needs_speed("velocities")
@@ -187,7 +187,7 @@ class QuestionWriter:
         self, names: list[str], key: str, stem: str, unit: str, prefix: str, per: str, ending: str,
         of: Callable[[str], Plane], what: str,
     ) -> None:  # fmt: skip
-        turns = {turn.replace("theta", stem, 1): turn for turn in self._turns}
+        turns = {turn.replace("theta", stem, 1): turn for turn in self.formulas.followed_turns}
         points = {f"{prefix}{p}": p for p in self._moving_points}
         slides = {s + ending: s for s in self._slides}
         for name in names:
@@ -238,12 +238,6 @@ class QuestionWriter:
                     example=example,
                 ),
             )
-
-    @property
-    def _turns(self) -> tuple[str, ...]:
-        """Angles that follow from the driver's, each once."""
-        turns = dict.fromkeys(t for b, t in self.formulas.turns.items() if b != GROUND)
-        return tuple(t for t in turns if t.startswith("theta") and t != self.linkage.moved)
 
     @property
     def _moving_points(self) -> tuple[str, ...]:
