@@ -113,7 +113,7 @@ class HigherGroupWriter(LoopWriter):
             if {*self.linkage.holders(point)} & {*self.order}:
                 ways[point] = self._reached(point, placed)
             elif point in slides and slides[point].on in self.order:
-                ways[point] = self._slid_on(slides[point], placed)
+                ways[point] = self._slid(slides[point], lambda p: self._reached(p, placed))
         outer = [*ways]
         entries: dict[str, str] = {}  #: of each body, the point from which it is followed
         loops: list[Chain] = []
@@ -141,15 +141,6 @@ class HigherGroupWriter(LoopWriter):
                     ways[point] = there
                     waiting.append(point)
         return loops, list(dict.fromkeys(placed))
-
-    def _slid_on(self, slide: SlideEntry, placed: list[str]) -> Chain:
-        """Return the vectors from the origin to a point of the group that slides on a placed body, and note what places its line."""
-        if slide.through_name:
-            return [*self._reached(slide.through_name, placed), self._along(slide)]
-        if slide.on == GROUND:
-            return self._slid(slide)
-        origin = self.linkage.bodies[slide.on].at
-        return [*self._reached(origin, placed), *(self._start_of(slide, origin) or []), self._along(slide)]
 
     def _near(
         self, turns: Mapping[str, str], slides: Sequence[SlideEntry], near: NearEntry

@@ -46,10 +46,12 @@ class LoopWriter(PointWriter):
                 self.write(
                     turn, offset.code, "deg", "bar_direction", rf"\delta_{{{start}{end}}}", words=words
                 )
-        frame = self.turns[body]
-        if not frame.startswith("theta"):
-            frame = repr(math.radians(float(frame)))
-        return [(length, frame, str(arm.sign), turn)]
+        return [(length, self._frame(body), str(arm.sign), turn)]
+
+    def _frame(self, body: str) -> str:
+        """Return the angle of a body in a vector: its quantity, or radians."""
+        turn = self.turns[body]
+        return turn if turn.startswith("theta") else repr(math.radians(float(turn)))
 
     def _named(self, value: Sum, name: str, point: str) -> str:
         """Return the name of a length; one that is an expression becomes a quantity."""
@@ -72,21 +74,19 @@ class LoopWriter(PointWriter):
 
     def _along(self, slide: SlideEntry) -> tuple[str, str, str, str]:
         """Return the vector along a slide."""
-        frame, along = self.turns[slide.on], Heading.of(slide.along.code)
+        frame, along = self._frame(slide.on), Heading.of(slide.along.code)
         turn = slide.along.code if along.names else repr(math.radians(along.constant))
-        if frame.startswith("theta"):
-            return slide.distance, frame, "1", turn
-        if float(frame) == 0:
-            return slide.distance, turn, "1", "0.0"
-        return slide.distance, repr(math.radians(float(frame))), "1", turn
+        return (slide.distance, turn, "1", "0.0") if frame == "0.0" else (slide.distance, frame, "1", turn)
 
-    def _slid(self, slide: SlideEntry) -> Chain:
-        """Return the vectors from the origin to a point that slides on a placed body."""
+    def _slid(self, slide: SlideEntry, way: Callable[[str], Chain] | None = None) -> Chain:
+        """Return the vectors from the origin to a point that slides on a placed body; ``way`` returns those to a placed point, by
+        default along bars."""
+        way = way or self._way
         if slide.through_name:
-            return [*self._way(slide.through_name), self._along(slide)]
+            return [*way(slide.through_name), self._along(slide)]
         origin = self.linkage.bodies[slide.on].at if slide.on != GROUND else ""
         start = self._start_of(slide, origin) or []
-        return [*(self._way(origin) if origin else []), *start, self._along(slide)]
+        return [*(way(origin) if origin else []), *start, self._along(slide)]
 
     def _leg(self, body: str, start: str, end: str) -> Chain:
         """Return the vectors on a body from one of its points to another, either of which may slide on it."""
@@ -117,7 +117,7 @@ class LoopWriter(PointWriter):
         if origin != self.linkage.bodies[slide.on].at:
             return None
         turns = ((place.x, 0.0), (place.y, math.pi / 2))
-        frame = self.turns[slide.on]
+        frame = self._frame(slide.on)
         return [
             (self._named(v, f"e_{slide.at}", slide.at), frame, "1", repr(turn))
             for v, turn in turns
@@ -143,11 +143,9 @@ class LoopWriter(PointWriter):
             if isinstance(outer, str):
                 ends.append([*self._way(outer), *self._steps(body, outer, inner)])
                 continue
-            origin = outer.through_name or (self.linkage.bodies[outer.on].at if outer.on != GROUND else "")
-            start = self._start_of(outer, origin)
-            if outer.of != body or outer.at != inner or start is None:
+            if outer.of != body or outer.at != inner:
                 return None
-            ends.append([*(self._way(origin) if origin else []), *start, self._along(outer)])
+            ends.append(self._slid(outer))
         return [*ends[0], *back(ends[1])]
 
     def around(self, group: Group) -> tuple[str, ...]:

@@ -1,5 +1,7 @@
 """Mechanisms stated as files move as their joints say: against differences, virtual work, and the hand-written solutions."""
 
+import re
+
 import numpy as np
 import pytest
 from linkage_samples import FOLDER, NAMES, course
@@ -201,6 +203,52 @@ def test_bars_on_a_body_that_slides_alone_hold_agree_with_its_rates(tmp_path):
     exercise = open_course(folder)["crossed_bars"]
     gaps = exercise.solution.residual_graph.evaluate(("residual",), dict(exercise.variant(1).given))
     assert np.max(gaps["residual"]) < 1e-12
+
+
+GUIDE_AT_30_DEGREES = """title = { en = "Guide at a fixed angle", fr = "Guide d'angle fixe" }
+[given]
+r2 = { from = "60 mm", to = "90 mm", step = "5 mm" }
+r6 = "200 mm"
+theta2 = { from = "10 deg", to = "80 deg", step = "5 deg" }
+omega2 = "3 rad/s"
+[ground]
+O = ["0 mm", "0 mm"]
+[bodies]
+2 = { at = "O", angle = "theta2", points = { A = "r2", G = ["20 mm", "15 mm"] } }
+3 = { points = { A = "0 mm" } }
+4 = { angle = "30 deg", points = { B = "0 mm" } }
+6 = { points = { G = "0 mm", H = "r6" } }
+7 = { points = { H = "0 mm" } }
+[slides]
+A = { of = "3", on = "4", through = "B", along = "90 deg", distance = "y" }
+B = { of = "4", on = "ground", through = "O", along = "0 deg", distance = "x" }
+H = { of = "7", on = "4", through = ["11 mm", "7 mm"], along = "40 deg", distance = "z" }
+[assembly]
+H = "ahead of G"
+[ask]
+positions = ["z", "theta6"]
+equations = true
+"""
+
+
+def test_loops_through_a_guide_of_fixed_angle_are_met_by_the_positions(tmp_path):
+    """The equations that are right answers, with the values of the same solution."""
+    (tmp_path / "exercises").mkdir()
+    (tmp_path / "exercises" / "guided.toml").write_text(GUIDE_AT_30_DEGREES, "utf-8")
+    exercise = open_course(tmp_path)["guided"]
+    variant = exercise.variant(0)
+    for name in ("loop_1_x", "loop_1_y"):
+        equation = variant.solution()[name].replace("°", "")
+        names = {*re.findall(r"[a-z]\w*", equation, re.IGNORECASE)} - {"sin", "cos"}
+        values = {**exercise.solve(**variant.given, only=tuple(names - {*variant.given})), **variant.given}
+        sides = [
+            eval(  # an answer of our own, in degrees
+                side,
+                {"sin": lambda d: np.sin(np.radians(d)), "cos": lambda d: np.cos(np.radians(d)), **values},
+            )
+            for side in equation.split("=")
+        ]
+        assert abs(sides[0] - sides[1]) < 1e-9 * abs(sides[0])
 
 
 def test_a_group_that_does_not_close_is_nan_there_and_says_so_alone():
