@@ -182,12 +182,11 @@ class Issued:
         ``ids`` are the identifiers from a platform; they take precedence over the name, whose words may then
         be in any order.
         """
-        if name in self._named:
+        if self._shown and name in self._named:
             return name
         if self._codes and (coded := self._codes.get(code_key(name))):
             return self._shown.get(coded, coded)
-        found = self._found(name, ids)
-        return found if found is None else self._shown.get(found, found)
+        return self._as_shown(self._found(name, ids))
 
     def _found(self, name: str, ids: Ids | None) -> str | None:
         if ids and (match := self._people.of_ids(ids)):
@@ -214,8 +213,10 @@ class Issued:
             for n in names
             if n
         )
-        found = next(filter(None, matches), None) if self.has_roster else None
-        return found if found is None else self._shown.get(found, found)
+        return self._as_shown(next(filter(None, matches), None) if self.has_roster else None)
+
+    def _as_shown(self, name: str | None) -> str | None:
+        return name and self._shown.get(name, name)
 
     def _newcomer(self, name: str, ids: Ids) -> str:
         """Return the name of a student without a roster; people of the same name are distinguished by an

@@ -277,6 +277,13 @@ def test_students_of_a_pool_are_found_by_what_identifies_them_then_by_name(tmp_p
     assert {row["out_of"] for row in table(tmp_path / "marks/summary.csv")} == {"11", "9"}
 
 
+def test_what_identifies_a_student_goes_before_a_name_that_another_has(tmp_path):
+    namesakes = {"Ann Doe": {"ID number": "wb-1"}, "Ann Doe (wb-2)": {"ID number": "wb-2"}}
+    issued = Issued.read(pool(tmp_path, seeds=(4,), students=namesakes))
+    assert issued.student("Ann Doe", [("ID number", "wb-2")]) == "Ann Doe (wb-2)"
+    assert issued.student("Ann Doe", [("ID number", "wb-1")]) == "Ann Doe"
+
+
 def test_a_stranger_to_the_roster_of_a_pool_is_rejected(tmp_path):
     few = {name: CLASS[name] for name in ("Ann Doe (wb-1)", "Robert Ray")}
     book = graded(tmp_path, RECORDED / "moodle_responses.csv", students=few)
