@@ -36,13 +36,6 @@ PPI = 75  #: of the picture of a sheet
 LANGUAGE_NAMES = {"en": "English", "fr": "Français"}
 
 
-def pages(course: Course) -> Iterator[tuple[str, bytes]]:
-    """Every file of the gallery: its name, its content."""
-    yield "index.md", index(course).encode()
-    for name in course.folder.in_order:
-        yield from exercise_files(course, name)
-
-
 def exercise_files(course: Course, name: str) -> Iterator[tuple[str, bytes]]:
     """The files of one exercise."""
     exercise = course[name]

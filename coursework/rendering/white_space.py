@@ -13,8 +13,9 @@ _INK = 250  #: the lightest grey that counts as ink
 
 def white_share(png: bytes) -> float:
     """Return the largest share of a page's height that is white between two marks of ink, the footer among them."""
-    rows = np.flatnonzero((pixels(png)[..., :3] < _INK).any(axis=(1, 2)))
-    return float(np.diff(rows).max()) / len(pixels(png)) if len(rows) > 1 else 1.0
+    samples = pixels(png)
+    rows = np.flatnonzero((samples[..., :3] < _INK).any(axis=(1, 2)))
+    return float(np.diff(rows).max()) / len(samples) if len(rows) > 1 else 1.0
 
 
 def pixels(png: bytes) -> np.ndarray:

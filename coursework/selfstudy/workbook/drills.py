@@ -140,7 +140,7 @@ def _fill(
             >= _MOST
         ):
             continue
-        drill = _drill(variant, part, grade, "")
+        drill = _drill(variant, part, grade)
         if drill and not {(drill.exercise, drill.answer), ("", drill.text)} & posed:
             posed |= {(drill.exercise, drill.answer), ("", drill.text)}
             found.append(drill)
@@ -166,7 +166,7 @@ def _in_turn(drawn: Mapping[str, Sequence[Variant]], grade: int) -> Iterator[tup
     yield from (pair for pair in chain.from_iterable(zip_longest(*rows)) if pair is not None)
 
 
-def _drill(variant: Variant, part: Part, grade: int, number: str) -> Drill | None:
+def _drill(variant: Variant, part: Part, grade: int) -> Drill | None:
     """Return a drill, or None where a question makes none of this grade."""
     try:
         names = _data(variant, part.quantity, grade)
@@ -185,7 +185,7 @@ def _drill(variant: Variant, part: Part, grade: int, number: str) -> Drill | Non
     unit = variant.exercise.units.get(part.quantity, "1")
     told = f"${number_latex(answer, '1', _DIGITS)}{unit_latex(unit)}$"
     return Drill(
-        number,
+        "",  # numbered in their order
         grade,
         variant.exercise.name,
         variant.seed,

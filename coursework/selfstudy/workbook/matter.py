@@ -13,10 +13,10 @@ from coursework.language.words import words
 from coursework.markup.links import TERM, links
 from coursework.selfstudy.workbook.concordance import person_entry, person_name
 from coursework.selfstudy.workbook.lessons import parted
+from coursework.selfstudy.workbook.numbering import around_tables
 from coursework.sheets.book import JointRow, JointsPiece, LessonText, Piece, ProsePiece, TablePiece, TitlePage
 
 _TITLE = re.compile(r"\A# +([^\n]*)\n*")
-_TABLE = re.compile(r"(?:^\|.*(?:\n|\Z))+", re.MULTILINE)
 _SOURCE = "exercises/book"
 
 
@@ -65,11 +65,8 @@ def _pieces(text: str) -> list[Piece]:
         if not isinstance(piece, ProsePiece):
             pieces.append(piece)
             continue
-        end = 0
-        for table in _TABLE.finditer(piece.text):
-            pieces += [ProsePiece(piece.text[end : table.start()]), TablePiece(table[0].rstrip(), "")]
-            end = table.end()
-        pieces.append(ProsePiece(piece.text[end:]))
+        for before, table in around_tables(piece.text):
+            pieces += [ProsePiece(before), TablePiece(table, "")]
     return [one for one in pieces if getattr(one, "text", "").strip()]
 
 

@@ -25,6 +25,15 @@ _QUOTED = re.compile(r"^> ?", re.MULTILINE)
 _FORM = 'definitions = [{ en = "crank" }], rules = [{ title = { en = "Grashof" }, words = { en = "makes whole turns" } }]'
 
 
+def around_tables(text: str) -> Iterator[tuple[str, str]]:
+    """Yield the text before each table with the table, and the text after the last one with none."""
+    end = 0
+    for table in _TABLE.finditer(text):
+        yield text[end : table.start()], table[0].rstrip()
+        end = table.end()
+    yield text[end:], ""
+
+
 @dataclass(frozen=True)
 class BoxRule:
     """Paragraph that stands in a box: that which has a term of the index, or some words."""
@@ -104,12 +113,10 @@ class LessonNumbers:
         if _FENCE.search(text):
             yield ProsePiece(text)
             return
-        end = 0
-        for table in _TABLE.finditer(text):
-            yield from self._paragraphs(text[end : table.start()])
-            yield TablePiece(table[0].rstrip(), self._next("table"))
-            end = table.end()
-        yield from self._paragraphs(text[end:])
+        for before, table in around_tables(text):
+            yield from self._paragraphs(before)
+            if table:
+                yield TablePiece(table, self._next("table"))
 
     def _paragraphs(self, text: str) -> Iterator[Piece]:
         plain: list[str] = []
