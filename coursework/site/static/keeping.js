@@ -35,7 +35,7 @@
     read(key) { try { return sound(JSON.parse(localStorage.getItem(key))); } catch (fault) { return null; } },
     write(key, value) { try { localStorage.setItem(key, JSON.stringify(value)); return true; } catch (fault) { return false; } },
     drop(key) { try { localStorage.removeItem(key); return true; } catch (fault) { return false; } },
-    // What pages left, the earlier first: keys, and what stands there.
+    // What pages left, the earlier typed first: keys, and what stands there.
     left(begin) {
       let keys = [];
       try { keys = Object.keys(localStorage).filter((key) => key.startsWith(begin)); } catch (fault) { /* it may not be asked */ }
@@ -176,6 +176,7 @@
       this.versions = JSON.parse(form.dataset.keepVersions || "{}");
       this.known = typed(form, true);  // what the server has
       this.pending = {};               // what it has not
+      this.when = 0;                   // of the last typing: of what two pages left, the later typed stands in the box
       this.flights = 0;
       form.addEventListener("keep:tell", (event) => this.tell(event.detail.text));
       form.addEventListener("keep:renew", () => this.renew());
@@ -192,13 +193,14 @@
     store() {
       if (!some(this.pending)) return device.drop(this.key);
       const page = { page: location.pathname, title: document.title, keep: this.form.dataset.keep };
-      return device.write(this.key, { ...page, when: Date.now(), boxes: this.pending });
+      return device.write(this.key, { ...page, when: this.when, boxes: this.pending });
     }
     // What earlier pages of this sheet left is taken up, and forgotten where it stood once it stands under the own key.
     restore() {
       const left = device.left("coursework " + this.form.dataset.keepAs + " ").filter(([key]) => key !== this.key);
       for (const [, kept] of left) for (const [name, one] of Object.entries(kept.boxes)) this.takeUp(name, one);
       if (!left.length) return;
+      this.when = left[left.length - 1][1].when || 0;
       if (!this.store()) { this.tell(this.said.not_here); return; }
       for (const [key, kept] of left) {
         const gone = only(kept.boxes, ([name]) => !own(this.known, name));  // boxes that this page has not
@@ -229,6 +231,7 @@
         this.pending[name] = waits ? entry(text, waits.over, waits.tried, waits.beside) : entry(text, this.versions[name]);
         this.give("changed", { name: name });
         any = true;
+        this.when = Date.now();
       }
       const stored = this.store();
       if (any) this.tell(stored ? this.said.saving : this.said.not_here);
