@@ -11,12 +11,16 @@ BIN := $(VENV)/bin
 .DEFAULT_GOAL := demo
 
 # A stamp for each extra, all in one environment: a command installs what it still lacks, the package with its extras at once.
-# Renewed when the requirements change; edited code needs no reinstallation. pip would compile one file after another, and tests
-# of libraries too; the package itself is compiled while pip waits for the network.
+# Renewed when the requirements change; edited code needs no reinstallation. uv takes a fifth of pip's time; pip does it where
+# uv cannot, or where pip is told of an index, which uv does not read. Libraries are compiled by all processors, without their
+# tests; the package itself is compiled while the network is waited for.
 PIP := $(BIN)/python -m pip install --quiet --disable-pip-version-check --no-compile
+UV := $(BIN)/uv pip install --quiet --python $(BIN)/python
 define install
-$(BIN)/python -m compileall -qq coursework & $(PIP) --editable '.$(1)'; code=$$?; wait; exit $$code
-$(BIN)/python -m compileall -qq -j 0 -x '/tests?/' $(VENV)/lib || true
+$(BIN)/python -m compileall -qq coursework & \
+{ ! $(BIN)/python -m pip config list | grep -q '[.:]index-url' && $(PIP) uv && $(UV) --editable '.$(1)'; } \
+	|| $(PIP) --editable '.$(1)'; code=$$?; wait; exit $$code
+$(BIN)/python -m compileall -qq -j 0 -x '/(tests?|pip|setuptools|pkg_resources|pygments)/' $(VENV)/lib || true
 touch $(VENV)/ready $@
 endef
 
