@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
 
+from coursework.cli.help_pages import HelpfulGroup
 from coursework.cli.options import FilePath, zone_option
 from coursework.errors import unknown
 from coursework.system.cache import cached_result
@@ -49,7 +50,7 @@ COMMANDS = {
 }
 
 
-class _Commands(click.Group):
+class _Commands(HelpfulGroup):
     """A group that loads a command when it is asked for."""
 
     def list_commands(self, ctx: click.Context) -> list[str]:
@@ -59,8 +60,8 @@ class _Commands(click.Group):
         if cmd_name not in COMMANDS:
             return None
         file, function = COMMANDS[cmd_name]
-        command: click.Command = getattr(import_module(f"coursework.cli.{file}"), function)
-        return command
+        self.add_command(getattr(import_module(f"coursework.cli.{file}"), function), cmd_name)
+        return super().get_command(ctx, cmd_name)
 
     def resolve_command(
         self, ctx: click.Context, args: list[str]
@@ -70,22 +71,13 @@ class _Commands(click.Group):
             ctx.fail(str(unknown("command", args[0], COMMANDS)))
         return super().resolve_command(ctx, args)
 
-    def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
-        """Write the commands with what each does, as :mod:`click` does; their files are loaded where one has changed."""
+    def summaries(self, ctx: click.Context) -> Mapping[str, str]:
+        """Return the help of each command by its name; their files are loaded where one has changed."""
         files = sorted(Path(__file__).parent.glob("*.py"))
-        summaries = cached_result(files, "commands.json", lambda: {n: self._help(ctx, n) for n in COMMANDS})
-        limit = formatter.width - 6 - max(map(len, COMMANDS))
-        with formatter.section("Commands"):
-            formatter.write_dl(
-                [
-                    (n, click.Command(n, help=summaries[n]).get_short_help_str(limit))
-                    for n in self.list_commands(ctx)
-                ]
-            )
-
-    def _help(self, ctx: click.Context, name: str) -> str:
-        command = self.get_command(ctx, name)
-        return command.help or "" if command else ""
+        found: dict[str, str] = cached_result(
+            files, "commands.json", lambda: dict(super(_Commands, self).summaries(ctx))
+        )
+        return found
 
     def shell_complete(self, ctx: click.Context, incomplete: str) -> list[CompletionItem]:
         """Return the commands by their names, which need not be loaded, and the options of them all."""

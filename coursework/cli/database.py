@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from coursework.cli.help_pages import HelpfulGroup
 from coursework.cli.options import (
     DONE,
     FOUND,
@@ -225,7 +226,7 @@ def written_marks(context: click.Context, url: str, name: str, folder: Path, dec
 # --------------------------------------------------------------------- database
 
 
-@click.group()
+@click.group(cls=HelpfulGroup)
 def database() -> None:
     """Inspect, dump and restore a database of papers, answers, marks and decisions."""
 

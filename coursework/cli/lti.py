@@ -9,6 +9,7 @@ from urllib.parse import urlsplit
 
 import click
 
+from coursework.cli.help_pages import HelpfulGroup
 from coursework.cli.options import (
     DONE,
     FOUND,
@@ -56,7 +57,7 @@ def _stored_ready() -> None:
     database_ready()
 
 
-@click.group()
+@click.group(cls=HelpfulGroup)
 def lti() -> None:
     """Open exercises from a learning platform and send points back, by LTI 1.3.
 

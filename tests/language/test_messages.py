@@ -7,9 +7,12 @@ import string
 import tomllib
 from collections import Counter
 
+import click
 import pytest
 from package_trees import trees
 
+from coursework.cli.commands import commands
+from coursework.cli.help_pages import paragraphs
 from coursework.cli.options import LANGUAGE_DEFAULT
 from coursework.errors import BadInput, UnknownName, counted, unknown
 from coursework.gradebook.book import rejected_rows
@@ -185,3 +188,33 @@ def test_notes_put_together_are_translated_one_by_one_and_come_apart_again():
     assert separate_notes(both) == notes
     assert separate_notes(notes[1]) == (notes[1],)
     assert joined_notes([]) == ""
+
+
+def helps(command, context):
+    """Yield the texts of the help of a command, of its options and of its commands."""
+    yield from paragraphs(command.help or "")
+    for option in command.get_params(context):
+        yield from paragraphs(getattr(option, "help", None) or "")
+    if isinstance(command, click.Group):
+        for name in command.list_commands(context):
+            yield from helps(command.get_command(context, name), context)
+
+
+@pytest.mark.parametrize("lang", [lang for lang in languages() if lang != "en"])
+def test_the_help_of_every_command_and_option_is_translated(lang, capsys):
+    """And no text is that no help has: what is written in capitals stands for what an option takes."""
+    said = {*helps(commands, click.Context(commands))}
+    table = tomllib.loads((CATALOGUES / f"{lang}.toml").read_text("utf-8"))["help"]
+    assert said - {*table} == set()
+    assert {one for one in {*table} - said if not one.isupper()} == {
+        "Usage: ",
+        "Options",
+        "Commands",
+        "default:",
+        "required",
+    }
+    with messages_in(lang):
+        for arguments in (["--help"], ["after", "--help"]):
+            commands.main(arguments, prog_name="coursework", standalone_mode=False)
+    shown = capsys.readouterr().out
+    assert not re.search(r"Usage:|Commands|FILE|DIRECTORY|Show |Options:|\[default", shown)
