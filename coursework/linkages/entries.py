@@ -70,6 +70,11 @@ class SlideEntry:
     along: QuantityExpression
     distance: str
 
+    @property
+    def rates(self) -> tuple[str, str]:
+        """Names of its speed and of its acceleration."""
+        return f"{self.distance}_dot", f"{self.distance}_ddot"
+
 
 @dataclass(frozen=True)
 class GearEntry:
@@ -157,9 +162,7 @@ class LinkageFile:
     loads: tuple[LoadEntry, ...]
     required: tuple[str, ...]  #: conditions on the draws
     drive: DriverEntry
-    speed: str = ""  #: of the driver; '' where the file gives none
-    acceleration: str = ""
-    name: str = field(default="")
+    name: str
     known: tuple[
         tuple[Mapping[str, float | str], Mapping[str, tuple[str, str]]], ...
     ] = ()  #: given values, then results as text and unit
@@ -202,6 +205,16 @@ class LinkageFile:
     def moved(self) -> str:
         """The quantity of the driver: an angle, or a length."""
         return self.drive.moved
+
+    @property
+    def speed(self) -> str:
+        """The quantity of the driver's speed; '' where the file gives none."""
+        return next((n for n in self.drive.rates[:1] if n in self.given), "")
+
+    @property
+    def acceleration(self) -> str:
+        """The quantity of the driver's acceleration; '' where the file gives none."""
+        return next((n for n in self.drive.rates[1:] if n in self.given), "")
 
     @property
     def counts(self) -> tuple[int, int, int]:

@@ -249,10 +249,6 @@ class FormulaWriter(HigherGroupWriter):
         self._finish_rod(q, B)
         self._rates_rrp(words, arm, track, distance)
 
-    def slide_rates(self, slide: SlideEntry) -> tuple[str, str]:
-        """Return the names of the speed along a slide, and of its rate."""
-        return f"{slide.distance}_dot", f"{slide.distance}_ddot"
-
     def _rates_rrp(self, words: Mapping[str, str], arm: Arm, track: SlideLine, distance: str) -> None:
         placed, _, sign, heading = track
         P, B, p = words["P"], words["B"], words["p"]
@@ -362,7 +358,7 @@ class FormulaWriter(HigherGroupWriter):
         self._finish_rod(q, Q)
         self._finish_rod(p, P)
         heading = self.heading(q) + direction
-        speed, gain = self.slide_rates(slide)
+        speed, gain = slide.rates
         symbol = self.quantities[distance].symbol
         rate, growth = self.omega(q), self.alpha(q)
         v, shift = self.velocity(P) - self.velocity(Q), Sum.of(offset or "0")
@@ -469,14 +465,14 @@ class FormulaWriter(HigherGroupWriter):
             self._finish_rod(group.q, name)
             carried = [self.carried(t.placed, self.at(name), "v") for t in (first, second)]
             write(carried[1] - carried[0], "_dot", "mm/s", f"slides_{kind}_rate", 1)
-            self.write_rates(name, first.moved(carried[0], f"{one.distance}_dot"), "v", "slides", words)
+            self.write_rates(name, first.moved(carried[0], one.rates[0]), "v", "slides", words)
             turned = [
-                t.across(self.coriolis(t, f"{s.distance}_dot")) for s, t in ((one, first), (other, second))
+                t.across(self.coriolis(t, s.rates[0])) for s, t in ((one, first), (other, second))
             ]
             carried = [self.carried(t.placed, self.at(name), "a") for t in (first, second)]
             gains = carried[1] + turned[1] - carried[0] - turned[0]
             write(gains, "_ddot", "mm/s^2", f"slides_{kind}_gain", 2)
-            there = first.moved(carried[0], f"{one.distance}_ddot") + turned[0]
+            there = first.moved(carried[0], one.rates[1]) + turned[0]
             self.write_rates(name, there, "a", "slides", words)
             return
         # The body of the first slide is known by the point of it that the slide moves.
@@ -493,13 +489,13 @@ class FormulaWriter(HigherGroupWriter):
         self._finish_rod(group.q, moved)
         v = self.velocity(name) - self.carried(track.placed, self.at(name), "v")
         write(v, "_dot", "mm/s", f"slides_{kind}_rate", 1)
-        there = track.moved(self.carried(track.placed, self.at(moved), "v"), f"{one.distance}_dot")
+        there = track.moved(self.carried(track.placed, self.at(moved), "v"), one.rates[0])
         self.write_rates(moved, there, "v", "slides", words)
-        turned = [t.across(self.coriolis(t, f"{s.distance}_dot")) for s, t in ((one, first), (other, second))]
+        turned = [t.across(self.coriolis(t, s.rates[0])) for s, t in ((one, first), (other, second))]
         a = self.acceleration(name) - self.carried(track.placed, self.at(name), "a") - turned[0] - turned[1]
         write(a, "_ddot", "mm/s^2", f"slides_{kind}_gain", 2)
-        there = track.moved(self.carried(track.placed, self.at(moved), "a"), f"{one.distance}_ddot")
-        own = track.across(self.coriolis(track, f"{one.distance}_dot"))
+        there = track.moved(self.carried(track.placed, self.at(moved), "a"), one.rates[1])
+        own = track.across(self.coriolis(track, one.rates[0]))
         self.write_rates(moved, there + own, "a", "slides", words)
 
     def _wheel(self, wheel: Wheel) -> None:

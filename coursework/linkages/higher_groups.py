@@ -221,7 +221,8 @@ class HigherGroupWriter(LoopWriter):
                     if slide is None:
                         continue
                     point = slide.at if slide.of == body else self.linkage.bodies[body].at
-                    self._write_slid(slide, body, point, words)
+                    track = self.track(slide, body, point)
+                    self.write_slid(track, point, slide.distance, slide.rates, words)
                 self._finish_rod(body, point)
                 waiting.remove(body)
                 break
@@ -236,17 +237,6 @@ class HigherGroupWriter(LoopWriter):
 
     def _slides_on_placed(self, slide: SlideEntry, body: str) -> bool:
         return body in (slide.of, slide.on) and ({slide.of, slide.on} - {body}) <= {*self.order}
-
-    def _write_slid(self, slide: SlideEntry, body: str, point: str, words: Mapping[str, str]) -> None:
-        track, told = self.track(slide, body, point), {**words, "B": point}
-        place = f"{track.base.complex} + {'-' if track.sign < 0 else ''}polar({slide.distance}, {track.heading.code})"
-        self.hide(f"_{point}", place)
-        self.write_end(point, track.moved(track.base, slide.distance), told, f"_{point}")
-        for kind, ending in (("v", "_dot"), ("a", "_ddot")):
-            there = track.moved(self.carried(track.placed, self.at(point), kind), slide.distance + ending)
-            if kind == "a":
-                there = there + track.across(self.coriolis(track, f"{slide.distance}_dot"))
-            self.write_rates(point, there, kind, "slides", told)
 
     @cached_property
     def _driven(self) -> dict[str, Plane]:

@@ -107,14 +107,12 @@ class _LinkageReader(JointReader):
         bodies = {**bodies, **{name: entry for name, (entry, _) in jacks.items()}}
         slides = self._slides(ground, bodies, given)
         drive = self._driver(bodies, slides, [d for _, d in jacks.values()], given)
-        speed, acceleration = drive.rates
         assembly, near = self._assembly(drive)
         gears, loads = self._gears(bodies), self._loads(bodies)
         linkage = LinkageFile(
             self.path, self.source, title, self._whole("version", 1), self._ordered(given, drive), ground, bodies, slides,
             gears, assembly, near, self._ask(), loads, self._required(), drive,
-            speed if speed in given else "", acceleration if acceleration in given else "", self.path.stem,
-            self._known(),
+            self.path.stem, self._known(),
         )  # fmt: skip
         for fault in linkage_faults(linkage):
             raise fault

@@ -407,14 +407,7 @@ class PointWriter:
         elif linkage.drive.kind == "slide":
             slide = linkage.slides[linkage.slides_driven]
             track, point = self.track(slide, driver, slide.at), slide.at
-            words = {"B": point}
-            place = f"{track.base.complex} + polar({linkage.moved}, {track.heading.code})"
-            self.hide(f"_{point}", place)
-            self.write_end(point, track.moved(track.base, linkage.moved), words, f"_{point}")
-            speed = linkage.drive.rates[0]
-            self.write_rates(point, track.moved(Plane(), speed), "v", "slides", words)
-            gain = track.moved(Plane(), linkage.acceleration or "0")
-            self.write_rates(point, gain, "a", "slides", words)
+            self.write_slid(track, point, linkage.moved, (linkage.drive.rates[0], linkage.acceleration or "0"), {})
             self._finish_rod(driver, point)
 
     def write_end(self, point: str, there: Plane, words: Mapping[str, str], hidden: str) -> None:
@@ -423,6 +416,24 @@ class PointWriter:
             self.write(
                 f"{axis}{point}", component.code, "mm", f"end_{axis}", words=words, stable=f"{hidden}.{half}"
             )
+
+    def write_slid(
+        self,
+        track: SlideLine,
+        point: str,
+        distance: str,
+        rates: tuple[str, str],
+        words: Mapping[str, str],
+    ) -> None:
+        """Write the place of a point that slides on a placed body, its velocity and its acceleration."""
+        told, sign = {**words, "B": point}, "-" if track.sign < 0 else ""
+        self.hide(f"_{point}", f"{track.base.complex} + {sign}polar({distance}, {track.heading.code})")
+        self.write_end(point, track.moved(track.base, distance), told, f"_{point}")
+        there = track.moved(self.carried(track.placed, self.at(point), "v"), rates[0])
+        self.write_rates(point, there, "v", "slides", told)
+        there = track.moved(self.carried(track.placed, self.at(point), "a"), rates[1])
+        across = track.across(self.coriolis(track, rates[0]))
+        self.write_rates(point, there + across, "a", "slides", told)
 
     def _finish_rod(self, body: str, start: str) -> None:
         self.reference[body] = start

@@ -70,26 +70,21 @@ class PolygonWriter:
             )
         yield from self._carried(self.linkage.driver, drawn)
         for group in self.formulas.groups:
-            inner = group.inner if isinstance(group, Dyad) else ""
-            if (
-                isinstance(group, Dyad)
-                and isinstance(inner, SlideEntry)
-                and group.kind == "RPR"
-                and inner.at == group.outer_p
-            ):
-                yield self._guided(group, inner)
-            elif not isinstance(group, Dyad) or group.kind not in ("RRR", "RRP"):
-                raise self.linkage.refused(
-                    ("ask", "polygon"),
-                    Message(
-                        "polygons are drawn of pairs of bars, of sliders on fixed guides, and of guides about a joint"
-                    ),
-                )
-            elif isinstance(group.outer_q, SlideEntry):
-                yield self._slider(group, group.outer_q)
-            else:
-                yield self._bars(group, str(group.outer_p), str(inner), str(group.outer_q))
-            drawn.add(str(inner) if isinstance(inner, str) else inner.at)
+            match group:
+                case Dyad(kind="RPR", inner=SlideEntry(at=inner) as slide) if inner == group.outer_p:
+                    yield self._guided(group, slide)
+                case Dyad(kind="RRR" | "RRP", inner=str(inner), outer_q=SlideEntry() as slide):
+                    yield self._slider(group, slide)
+                case Dyad(kind="RRR" | "RRP", inner=str(inner)):
+                    yield self._bars(group, str(group.outer_p), inner, str(group.outer_q))
+                case _:
+                    raise self.linkage.refused(
+                        ("ask", "polygon"),
+                        Message(
+                            "polygons are drawn of pairs of bars, of sliders on fixed guides, and of guides about a joint"
+                        ),
+                    )
+            drawn.add(inner)
             for body in group.bodies:
                 yield from self._carried(body, drawn)
 
@@ -166,8 +161,8 @@ class PolygonWriter:
         under, image = f"{P}_{{{guide}}}", f"{P.lower()}_{guide}"
         first = self._about(guide, Q, P, "'", image, under)
         heading = self.formulas.heading(guide) + Heading.of(slide.along.code)
-        way, speed = f"polar(1, {heading.code})", f"{slide.distance}_dot"
-        letter, rate = ("V", speed) if self.kind == "velocity" else ("a", f"{slide.distance}_ddot")
+        way, speed = f"polar(1, {heading.code})", slide.rates[0]
+        letter, rate = ("V", speed) if self.kind == "velocity" else ("a", slide.rates[1])
         parallel = rf"\parallel {P}x_{{{guide}}}"
         kind = "" if self.kind == "velocity" else "^r"
         name, value, start = rf"-\vec{{{letter}}}{kind}_{{{P}/{under}}}", f"-{rate} * {way}", self._image(P)
@@ -191,8 +186,8 @@ class PolygonWriter:
             )
         B = str(group.inner)
         way = f"polar(1, {Heading.of(slide.along.code).code})"
-        letter, ending = ("V", "_dot") if self.kind == "velocity" else ("a", "_ddot")
-        value = f"{slide.distance}{ending} * {way}"
+        letter, rate = ("V", slide.rates[0]) if self.kind == "velocity" else ("a", slide.rates[1])
+        value = f"{rate} * {way}"
         name = rf"\vec{{{letter}}}_{{{B}}}"
         call = rf'Side("{self.pole}", {B.lower()!r}, r"{name}", {value}, r"\parallel {B}x", way={way})'
         return [
