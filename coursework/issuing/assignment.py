@@ -203,9 +203,9 @@ class _AssignmentReader(TomlReader):
         super().__init__(path, source)
         self.course = course
 
-    def refused_key(self, key: str, why: Message, exercise: int = -1) -> BadInput:
+    def refused_key(self, key: str, template: str, /, exercise: int = -1, **values: Any) -> BadInput:
         """Return the error of a key, at the top level or in a table of exercises."""
-        return self.refused(["exercises", exercise, key] if exercise >= 0 else [key], why)
+        return self.refused(["exercises", exercise, key] if exercise >= 0 else [key], template, **values)
 
     def assignment(self, table: Mapping[str, Any]) -> Assignment:
         readers: dict[str, Callable[[Any], Any]] = {
@@ -241,8 +241,7 @@ class _AssignmentReader(TomlReader):
                 values[key] = readers[key](value)
             else:
                 raise self.refused_key(
-                    key,
-                    Message("no key {key}{near}", key=_short(key), near=nearest(key, [*readers, *OPTIONS])),
+                    key, "no key {key}{near}", key=_short(key), near=nearest(key, [*readers, *OPTIONS])
                 )
         if "exercises" not in values:
             names = ", ".join(self.course.names[:4])
@@ -253,13 +252,10 @@ class _AssignmentReader(TomlReader):
             )
         if "solutions_after" in values and values.get("answers") == "never":
             raise self.refused_key(
-                "solutions_after",
-                Message('answers = "never" never shows the solutions; omit one of the two'),
+                "solutions_after", 'answers = "never" never shows the solutions; omit one of the two'
             )
         if "logo" in values and not values.get("logo_alt"):
-            raise self.refused_key(
-                "logo", Message('a logo needs a text for those who cannot see it: logo_alt = "…"')
-            )
+            raise self.refused_key("logo", 'a logo needs a text for those who cannot see it: logo_alt = "…"')
         return Assignment(self.path.stem, options=options, **values)
 
     # ------------------------------------------------------------------ values
@@ -271,22 +267,18 @@ class _AssignmentReader(TomlReader):
             if not isinstance(value, Mapping) or not all(isinstance(v, str) for v in value.values()):
                 raise self.refused_key(
                     key,
-                    Message(
-                        '{key} is a text, or one for each language: {{ fr = "…", en = "…" }}; found {found}',
-                        key=key,
-                        found=reprlib.repr(value),
-                    ),
+                    '{key} is a text, or one for each language: {{ fr = "…", en = "…" }}; found {found}',
+                    key=key,
+                    found=reprlib.repr(value),
                 )
             for lang in value:
                 if lang not in languages():
                     raise self.refused_key(
                         key,
-                        Message(
-                            "{key}: no language {lang!r}{near}",
-                            key=key,
-                            lang=lang,
-                            near=nearest(lang, languages()),
-                        ),
+                        "{key}: no language {lang!r}{near}",
+                        key=key,
+                        lang=lang,
+                        near=nearest(lang, languages()),
                     )
             return dict(value)
 
@@ -299,12 +291,10 @@ class _AssignmentReader(TomlReader):
         if isinstance(value, bool) or not isinstance(value, int) or not 0 <= value <= MOST_WORK_MM:
             raise self.refused_key(
                 "work",
-                Message(
-                    "work is a height in mm from 0 to {most}; found {found}",
-                    most=MOST_WORK_MM,
-                    found=reprlib.repr(value),
-                ),
-                number,
+                "work is a height in mm from 0 to {most}; found {found}",
+                most=MOST_WORK_MM,
+                found=reprlib.repr(value),
+                exercise=number,
             )
         return value
 
@@ -312,7 +302,7 @@ class _AssignmentReader(TomlReader):
         def read(value: Any) -> bool:
             if not isinstance(value, bool):
                 raise self.refused_key(
-                    key, Message("{key} is true or false; found {found}", key=key, found=reprlib.repr(value))
+                    key, "{key} is true or false; found {found}", key=key, found=reprlib.repr(value)
                 )
             return value
 
@@ -323,13 +313,11 @@ class _AssignmentReader(TomlReader):
             if value not in allowed:
                 raise self.refused_key(
                     key,
-                    Message(
-                        "{key} is {allowed}; found {found}{near}",
-                        key=key,
-                        allowed=" or ".join(allowed),
-                        found=reprlib.repr(value),
-                        near=nearest(str(value), allowed),
-                    ),
+                    "{key} is {allowed}; found {found}{near}",
+                    key=key,
+                    allowed=" or ".join(allowed),
+                    found=reprlib.repr(value),
+                    near=nearest(str(value), allowed),
                 )
             return str(value)
 
@@ -346,9 +334,9 @@ class _AssignmentReader(TomlReader):
             except ValueError:
                 raise self.refused_key(
                     key,
-                    Message(
-                        "{key} is a day such as 2026-12-04; found {found}", key=key, found=reprlib.repr(value)
-                    ),
+                    "{key} is a day such as 2026-12-04; found {found}",
+                    key=key,
+                    found=reprlib.repr(value),
                 ) from None
 
         return read
@@ -357,26 +345,25 @@ class _AssignmentReader(TomlReader):
         path = self.path.parent / str(value)
         if path.suffix.lower() not in (".svg", ".png"):
             raise self.refused_key(
-                "logo", Message("logo is an SVG or a PNG file; found {found}", found=reprlib.repr(value))
+                "logo", "logo is an SVG or a PNG file; found {found}", found=reprlib.repr(value)
             )
         if not path.is_file():
-            raise self.refused_key("logo", Message("logo: there is no file {file}", file=path))
+            raise self.refused_key("logo", "logo: there is no file {file}", file=path)
         return path
 
     def _mark(self, value: Any) -> Scale:
         if not isinstance(value, Mapping):
             raise self.refused_key(
-                "mark", Message("mark is {{ of = 20, step = 0.5 }}; found {found}", found=reprlib.repr(value))
+                "mark", "mark is {{ of = 20, step = 0.5 }}; found {found}", found=reprlib.repr(value)
             )
         for key, number in value.items():
             if key not in ("of", "step"):
                 raise self.refused_key(
-                    "mark", Message("mark has no {key!r}{near}", key=key, near=nearest(key, ("of", "step")))
+                    "mark", "mark has no {key!r}{near}", key=key, near=nearest(key, ("of", "step"))
                 )
             if isinstance(number, bool) or not isinstance(number, (int, float)) or not number > 0:
                 raise self.refused_key(
-                    "mark",
-                    Message("mark: {key} is a number above 0; found {number!r}", key=key, number=number),
+                    "mark", "mark: {key} is a number above 0; found {number!r}", key=key, number=number
                 )
         return Scale(float(value.get("of", 20)), float(value.get("step", 0.5)))
 
@@ -386,12 +373,10 @@ class _AssignmentReader(TomlReader):
         if isinstance(value, bool) or not isinstance(value, int) or not 1 <= value <= MOST_VERSIONS:
             raise self.refused_key(
                 "versions",
-                Message(
-                    'versions is "{each}", or a number from 1 to {most}; found {found}',
-                    each=EACH,
-                    most=MOST_VERSIONS,
-                    found=reprlib.repr(value),
-                ),
+                'versions is "{each}", or a number from 1 to {most}; found {found}',
+                each=EACH,
+                most=MOST_VERSIONS,
+                found=reprlib.repr(value),
             )
         return value
 
@@ -402,11 +387,9 @@ class _AssignmentReader(TomlReader):
             ):
                 raise self.refused_key(
                     key,
-                    Message(
-                        '{key} lists columns of the roster: ["number", "group"]; found {found}',
-                        key=key,
-                        found=reprlib.repr(value),
-                    ),
+                    '{key} lists columns of the roster: ["number", "group"]; found {found}',
+                    key=key,
+                    found=reprlib.repr(value),
                 )
             return tuple(value)
 
@@ -415,8 +398,7 @@ class _AssignmentReader(TomlReader):
     def _sort(self, value: Any) -> str:
         if not isinstance(value, str) or not value.strip():
             raise self.refused_key(
-                "sort",
-                Message('sort is a column of the roster: "group"; found {found}', found=reprlib.repr(value)),
+                "sort", 'sort is a column of the roster: "group"; found {found}', found=reprlib.repr(value)
             )
         return value
 
@@ -432,8 +414,7 @@ class _AssignmentReader(TomlReader):
             return Secret.of(value)
         except ValueError as fault:
             raise self.refused_key(
-                "secret",
-                Message("{problem}; delete the line, and 'coursework build' creates one", problem=fault),
+                "secret", "{problem}; delete the line, and 'coursework build' creates one", problem=fault
             ) from None
 
     # --------------------------------------------------------------- exercises
@@ -444,15 +425,16 @@ class _AssignmentReader(TomlReader):
             or not value
             or not all(isinstance(exercise, Mapping) for exercise in value)
         ):
-            raise self.refused_key("exercises", Message("exercises are tables: [[exercises]], then name = …"))
+            raise self.refused_key("exercises", "exercises are tables: [[exercises]], then name = …")
         exercises = tuple(self._exercise(number, exercise) for number, exercise in enumerate(value))
         names = [exercise.name for exercise in exercises]
         for number, name in enumerate(names):
             if name in names[:number]:
                 raise self.refused_key(
                     "name",
-                    Message("{name} appears twice; an assignment has each exercise once", name=name),
-                    number,
+                    "{name} appears twice; an assignment has each exercise once",
+                    name=name,
+                    exercise=number,
                 )
         return exercises
 
@@ -462,8 +444,10 @@ class _AssignmentReader(TomlReader):
             if key not in keys:
                 raise self.refused_key(
                     key,
-                    Message("no key {key} in [[exercises]]{near}", key=_short(key), near=nearest(key, keys)),
-                    number,
+                    "no key {key} in [[exercises]]{near}",
+                    key=_short(key),
+                    near=nearest(key, keys),
+                    exercise=number,
                 )
         name = table.get("name")
         if name not in self.course.names:
@@ -473,8 +457,10 @@ class _AssignmentReader(TomlReader):
                 lacks = Message("no exercise {name}", name=_short(name))
             raise self.refused_key(
                 "name" if "name" in table else "exercises",
-                Message("{lacks}{near}", lacks=lacks, near=near),
-                number,
+                "{lacks}{near}",
+                lacks=lacks,
+                near=near,
+                exercise=number,
             )
         parts = self._parts(number, str(name), table.get("parts"))
         points = self._points(number, str(name), table.get("points"))
@@ -482,8 +468,9 @@ class _AssignmentReader(TomlReader):
         if seed is not None and (isinstance(seed, bool) or not isinstance(seed, int) or seed < 0):
             raise self.refused_key(
                 "seed",
-                Message("a seed is a whole number from 0 on; found {found}", found=_short(seed)),
-                number,
+                "a seed is a whole number from 0 on; found {found}",
+                found=_short(seed),
+                exercise=number,
             )
         work = self._work(table["work"], number) if "work" in table else None
         given = self._given(number, str(name), table.get("given"))
@@ -496,16 +483,14 @@ class _AssignmentReader(TomlReader):
         if not isinstance(value, Mapping):
             raise self.refused_key(
                 "given",
-                Message(
-                    'given is a table of values with their units: {{ r1 = "228.6 mm" }}; found {found}',
-                    found=_short(value),
-                ),
-                number,
+                'given is a table of values with their units: {{ r1 = "228.6 mm" }}; found {found}',
+                found=_short(value),
+                exercise=number,
             )
         try:
             return self.course[name].stated(value)
         except CourseworkError as fault:
-            raise self.refused_key("given", Message("given: {problem}", problem=fault), number) from fault
+            raise self.refused_key("given", "given: {problem}", problem=fault, exercise=number) from fault
 
     def _parts(self, number: int, name: str, value: Any) -> tuple[str, ...] | None:
         if value is None:
@@ -514,8 +499,9 @@ class _AssignmentReader(TomlReader):
         if not isinstance(parts, list) or not parts or not all(isinstance(part_id, str) for part_id in parts):
             raise self.refused_key(
                 "parts",
-                Message('parts is a list of ids: ["rA", "theta4"]; found {found}', found=reprlib.repr(value)),
-                number,
+                'parts is a list of ids: ["rA", "theta4"]; found {found}',
+                found=reprlib.repr(value),
+                exercise=number,
             )
         ids = [*(part.id for part in self.course[name].spec.parts), USUAL, ALL]
         for part_id in parts:
@@ -544,7 +530,8 @@ class _AssignmentReader(TomlReader):
         if isinstance(value, bool) or not isinstance(value, (int, float)) or not 0 < value < float("inf"):
             raise self.refused_key(
                 "points",
-                Message("points are a number above 0; found {found}", found=reprlib.repr(value)),
-                number,
+                "points are a number above 0; found {found}",
+                found=reprlib.repr(value),
+                exercise=number,
             )
         return float(value)

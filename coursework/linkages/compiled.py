@@ -23,7 +23,6 @@ from coursework.linkages.points import Quantity, names_in
 from coursework.linkages.questions import QuestionWriter
 from coursework.linkages.sentences import exercise_text, solution_text, spoken
 from coursework.linkages.vectors import PAPER_MM
-from coursework.messages import Message
 from coursework.model import symbol_of
 
 _IMPORTS = """\
@@ -248,11 +247,9 @@ class CompiledLinkage:
         if arguments != (self.linkage.driver,) or self.linkage.drive.kind != "turn":
             raise self.linkage.refused(
                 ("given", "require"),
-                Message(
-                    "is_crank({driver}) says that the driven body turns all round; found is_crank({found})",
-                    driver=self.linkage.driver,
-                    found=", ".join(arguments),
-                ),
+                "is_crank({driver}) says that the driven body turns all round; found is_crank({found})",
+                driver=self.linkage.driver,
+                found=", ".join(arguments),
             )
         return QuantityExpression("crank_turns", ("crank_turns",))
 
@@ -261,11 +258,9 @@ class CompiledLinkage:
         if len(arguments) != 1 or arguments[0] not in sines:
             raise self.linkage.refused(
                 ("given", "require"),
-                Message(
-                    "transmission_angle(B) is that at an inner joint: {value}; found {found}",
-                    value=", ".join(sines) or "there is none",
-                    found=", ".join(arguments),
-                ),
+                "transmission_angle(B) is that at an inner joint: {value}; found {found}",
+                value=", ".join(sines) or "there is none",
+                found=", ".join(arguments),
             )
         code = f"np.degrees(np.arcsin(np.minimum(abs({sines[arguments[0]]}), 1)))"
         return QuantityExpression(code, names_in(code))
@@ -347,13 +342,11 @@ class CompiledLinkage:
                     )
                     raise self.linkage.refused(
                         ("known",),
-                        Message(
-                            "a known result is a quantity in its unit; found {name} = {text} {unit}; there is {would}",
-                            name=name,
-                            text=text,
-                            unit=unit,
-                            would=would,
-                        ),
+                        "a known result is a quantity in its unit; found {name} = {text} {unit}; there is {would}",
+                        name=name,
+                        text=text,
+                        unit=unit,
+                        would=would,
                     )
             stated = ", ".join(f"{n}={v!r}" for n, v in {**constants, **given}.items())
             results = ", ".join(f"{n}={text!r}" for n, (text, _) in gives.items())

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -167,9 +167,9 @@ class LinkageFile:
         tuple[Mapping[str, float | str], Mapping[str, tuple[str, str]]], ...
     ] = ()  #: given values, then results as text and unit
 
-    def refused(self, at: Sequence[str | int], why: str) -> BadInput:
+    def refused(self, at: Sequence[str | int], template: str, /, **values: Any) -> BadInput:
         """Return the error of a key, with file and line."""
-        return TomlReader(self.path, self.source).refused(at, why)
+        return TomlReader(self.path, self.source).refused(at, template, **values)
 
     def holders(self, point: str) -> tuple[str, ...]:
         """Return the bodies that have a point, the ground first."""

@@ -5,16 +5,11 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from coursework.linkages.entries import (
-    AssemblyEntry,
-    LinkageFile,
-    SlideEntry,
-)
+from coursework.linkages.entries import AssemblyEntry, LinkageFile, SlideEntry
 from coursework.linkages.groups import Dyad, Group, HigherGroup, Wheel
 from coursework.linkages.higher_groups import HigherGroupWriter
 from coursework.linkages.points import Arm, SlideLine, UsualMistake, dotted, local_plane, over, rotated
 from coursework.linkages.terms import Heading, Plane, Sum
-from coursework.messages import Message
 
 
 class FormulaWriter(HigherGroupWriter):
@@ -58,38 +53,32 @@ class FormulaWriter(HigherGroupWriter):
                 first, last = ends
                 raise linkage.refused(
                     ("assembly",),
-                    Message(
-                        '{point} can be assembled in two ways: [assembly], then {point} = "left of {first} -> {last}"',
-                        point=point,
-                        first=first,
-                        last=last,
-                    ),
+                    '{point} can be assembled in two ways: [assembly], then {point} = "left of {first} -> {last}"',
+                    point=point,
+                    first=first,
+                    last=last,
                 )
             entry = AssemblyEntry((default,), ends[0] if ends else "")
         wanted = {"left", "right"} if ends and ends[1] else {"ahead", "behind"}
         if not set(entry.ways) <= wanted:
             raise linkage.refused(
                 ("assembly", point),
-                Message(
-                    "{point} is assembled {found}; found {value}",
-                    point=point,
-                    found=" or ".join(sorted(wanted)),
-                    value=entry.ways[0],
-                ),
+                "{point} is assembled {found}; found {value}",
+                point=point,
+                found=" or ".join(sorted(wanted)),
+                value=entry.ways[0],
             )
         sign = 1
         if ends and ends[1]:
             if {entry.start, entry.end} != set(ends):
                 raise linkage.refused(
                     ("assembly", point),
-                    Message(
-                        "{point} lies left or right of {value} -> {value_2}; found {start} -> {end}",
-                        point=point,
-                        value=ends[0],
-                        value_2=ends[1],
-                        start=entry.start,
-                        end=entry.end,
-                    ),
+                    "{point} lies left or right of {value} -> {value_2}; found {start} -> {end}",
+                    point=point,
+                    value=ends[0],
+                    value_2=ends[1],
+                    start=entry.start,
+                    end=entry.end,
                 )
             sign = 1 if (entry.start, entry.end) == ends else -1
         self.modes[point] = entry
@@ -188,8 +177,7 @@ class FormulaWriter(HigherGroupWriter):
             )  # fmt: skip
         a_p, a_q = self._own(P, p, to_p, "a"), self._own(Q, q, to_q, "a")
         self.hide(
-            gains,
-            f"dyads.rrr_rates({arms}, ({v_p.complex}, {a_p.complex}), ({v_q.complex}, {a_q.complex}))",
+            gains, f"dyads.rrr_rates({arms}, ({v_p.complex}, {a_p.complex}), ({v_q.complex}, {a_q.complex}))"
         )
         w_p, w_q = f"{self.omega(p)}**2", f"{self.omega(q)}**2"
         bare_p, bare_q = apart("a")
@@ -423,9 +411,9 @@ class FormulaWriter(HigherGroupWriter):
         if below.vanishes:
             raise self.linkage.refused(
                 ("slides", other.at),
-                Message(
-                    "the slides at {at} and {at_2} are parallel: they hold nothing", at=one.at, at_2=other.at
-                ),
+                "the slides at {at} and {at_2} are parallel: they hold nothing",
+                at=one.at,
+                at_2=other.at,
             )
         words = {
             "B": name,
@@ -466,9 +454,7 @@ class FormulaWriter(HigherGroupWriter):
             carried = [self.carried(t.placed, self.at(name), "v") for t in (first, second)]
             write(carried[1] - carried[0], "_dot", "mm/s", f"slides_{kind}_rate", 1)
             self.write_rates(name, first.moved(carried[0], one.rates[0]), "v", "slides", words)
-            turned = [
-                t.across(self.coriolis(t, s.rates[0])) for s, t in ((one, first), (other, second))
-            ]
+            turned = [t.across(self.coriolis(t, s.rates[0])) for s, t in ((one, first), (other, second))]
             carried = [self.carried(t.placed, self.at(name), "a") for t in (first, second)]
             gains = carried[1] + turned[1] - carried[0] - turned[0]
             write(gains, "_ddot", "mm/s^2", f"slides_{kind}_gain", 2)

@@ -7,7 +7,6 @@ from dataclasses import dataclass
 
 from coursework.errors import CourseworkError
 from coursework.linkages.entries import GROUND, GearEntry, LinkageFile, SlideEntry
-from coursework.messages import Message
 from coursework.structure.assour import Decomposition, decompose
 
 Joint = str | SlideEntry  #: a point that is a pin, or a slide
@@ -98,8 +97,7 @@ def groups_of(linkage: LinkageFile) -> tuple[tuple[Group, ...], int]:
         else:
             left = next(iter(wheels.values()))
             raise linkage.refused(
-                ("gears",),
-                Message("the wheel {body} rolls on a body that is placed only after it", body=left.body),
+                ("gears",), "the wheel {body} rolls on a body that is placed only after it", body=left.body
             )
     return tuple(groups), decomposition.rank if decomposition else 1
 
@@ -128,12 +126,10 @@ def _wheels(linkage: LinkageFile) -> dict[str, Wheel]:
         else:
             raise linkage.refused(
                 ("gears",),
-                Message(
-                    "the gear of {first} and {second} turns no body that is pinned to the carrier {carrier}",
-                    first=gear.first,
-                    second=gear.second,
-                    carrier=gear.carrier,
-                ),
+                "the gear of {first} and {second} turns no body that is pinned to the carrier {carrier}",
+                first=gear.first,
+                second=gear.second,
+                carrier=gear.carrier,
             )
     return results
 
@@ -205,11 +201,9 @@ def _dyad(linkage: LinkageFile, bodies: tuple[str, ...], placed: Sequence[str]) 
         if all(isinstance(e, SlideEntry) for e in ends):
             raise linkage.refused(
                 ("slides",),
-                Message(
-                    "bodies {p} and {q} are held by three slides: they cannot turn, and are held twice",
-                    p=p,
-                    q=q,
-                ),
+                "bodies {p} and {q} are held by three slides: they cannot turn, and are held twice",
+                p=p,
+                q=q,
             )
         if isinstance(ends[0], SlideEntry) or (all(isinstance(e, str) for e in ends) and middle.of == q):
             p, q, ends = q, p, ends[::-1]

@@ -7,17 +7,12 @@ from functools import cached_property
 
 import numpy as np
 
-from coursework.linkages.entries import (
-    GROUND,
-    NearEntry,
-    SlideEntry,
-)
+from coursework.linkages.entries import GROUND, NearEntry, SlideEntry
 from coursework.linkages.expressions import QuantityExpression
 from coursework.linkages.groups import HigherGroup
 from coursework.linkages.loop_chains import LoopWriter, back, closure_latex, vector_code
 from coursework.linkages.points import Chain, dotted, local_plane, middle, rotated, value_of
 from coursework.linkages.terms import Plane, Sum
-from coursework.messages import Message
 
 
 class HigherGroupWriter(LoopWriter):
@@ -28,12 +23,10 @@ class HigherGroupWriter(LoopWriter):
         if linkage.near is None:
             raise linkage.refused(
                 ("assembly",),
-                Message(
-                    'bodies {found} are one group of class {value}: say from where Newton\'s method starts: near = {{ {driver}, E = ["120 mm", "80 mm"], … }}',
-                    found=", ".join(group.bodies),
-                    value="I" * group.rank if group.rank < 4 else group.rank,
-                    driver='angle = "60 deg"' if linkage.drive.kind == "turn" else 'length = "60 mm"',
-                ),
+                'bodies {found} are one group of class {value}: say from where Newton\'s method starts: near = {{ {driver}, E = ["120 mm", "80 mm"], … }}',
+                found=", ".join(group.bodies),
+                value="I" * group.rank if group.rank < 4 else group.rank,
+                driver='angle = "60 deg"' if linkage.drive.kind == "turn" else 'length = "60 mm"',
             )
         slides = [s for s in linkage.slides.values() if {s.of, s.on} & {*group.bodies}]
         number = 1 + sum(name.startswith("_chain_") for name in self.quantities)
@@ -158,20 +151,17 @@ class HigherGroupWriter(LoopWriter):
                 points = [p for b in alike for p in linkage.bodies[b].points]
                 raise linkage.refused(
                     ("assembly", "near"),
-                    Message(
-                        "near tells the places of two points of body {body}; found {value} of {found}",
-                        body=alike[0],
-                        value=", ".join(p for p in points if p in places) or "none",
-                        found=", ".join(points),
-                    ),
+                    "near tells the places of two points of body {body}; found {value} of {found}",
+                    body=alike[0],
+                    value=", ".join(p for p in points if p in places) or "none",
+                    found=", ".join(points),
                 )
             results[turn] = found
         known = {linkage.moved: float(np.radians(near.driver)), **results}
         for slide in slides:
             if slide.at not in places:
                 raise linkage.refused(
-                    ("assembly", "near"),
-                    Message("near tells the place of {point}, which slides", point=slide.at),
+                    ("assembly", "near"), "near tells the place of {point}, which slides", point=slide.at
                 )
             turn = self.turns[slide.on]
             frame = np.exp(1j * (known[turn] if turn in known else np.radians(float(turn))))
@@ -229,10 +219,8 @@ class HigherGroupWriter(LoopWriter):
             else:
                 raise self.linkage.refused(
                     ("bodies", waiting[0]),
-                    Message(
-                        "body {body} shares no point with a body that stands before it in the file",
-                        body=waiting[0],
-                    ),
+                    "body {body} shares no point with a body that stands before it in the file",
+                    body=waiting[0],
                 )
 
     def _slides_on_placed(self, slide: SlideEntry, body: str) -> bool:

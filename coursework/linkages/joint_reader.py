@@ -18,7 +18,6 @@ from coursework.linkages.entries import (
 )
 from coursework.linkages.expressions import QuantityExpression
 from coursework.linkages.table_reader import NAME, POINT, TableReader
-from coursework.messages import Message
 
 _BODY = re.compile(r"(?:[2-9]|[1-9][0-9]|[a-z][a-z0-9]*)\Z")
 
@@ -33,10 +32,8 @@ class JointReader(TableReader):
         if not table:
             raise self.refused(
                 ("bodies",),
-                Message(
-                    "a mechanism has bodies: [bodies], then {example}",
-                    example='2 = { at = "O", angle = "theta2", points = { A = "r2" } }',
-                ),
+                "a mechanism has bodies: [bodies], then {example}",
+                example='2 = { at = "O", angle = "theta2", points = { A = "r2" } }',
             )
         results = {}
         for name, value in table.items():
@@ -44,27 +41,19 @@ class JointReader(TableReader):
             if not _BODY.match(name):
                 raise self.refused(
                     at,
-                    Message(
-                        "a body is called by a number from 2 on, or a small letter; found {name!r} (the ground is 1)",
-                        name=name,
-                    ),
+                    "a body is called by a number from 2 on, or a small letter; found {name!r} (the ground is 1)",
+                    name=name,
                 )
             if not isinstance(value, Mapping):
                 raise self.refused(
-                    at,
-                    Message(
-                        'a body is {{ points = {{ A = "0 mm", B = "r3" }} }}; found {value!r}', value=value
-                    ),
+                    at, 'a body is {{ points = {{ A = "0 mm", B = "r3" }} }}; found {value!r}', value=value
                 )
             self.only(value, ("at", "angle", "points"), at, name)
             points = self._body_points(name, value)
             origin = value.get("at") or next((p for p, place in points.items() if place.is_origin), "")
             if not origin:
                 raise self.refused(
-                    at,
-                    Message(
-                        'body {name} says where its frame begins: at = "A", or a point at "0 mm"', name=name
-                    ),
+                    at, 'body {name} says where its frame begins: at = "A", or a point at "0 mm"', name=name
                 )
             if "at" in value:
                 self._check_point(at, str(origin))
@@ -82,8 +71,7 @@ class JointReader(TableReader):
         points = value.get("points", {})
         if not isinstance(points, Mapping):
             raise self.refused(
-                ("bodies", name),
-                Message('points = {{ A = "0 mm", B = "r3" }}; found {points!r}', points=points),
+                ("bodies", name), 'points = {{ A = "0 mm", B = "r3" }}; found {points!r}', points=points
             )
         origin = str(
             value.get("at")
@@ -117,27 +105,22 @@ class JointReader(TableReader):
         if not driven:
             raise self.refused(
                 ("bodies",),
-                Message(
-                    "nothing drives: one body is turned by a given angle: {example}",
-                    example='2 = { at = "O", angle = "theta2", … }',
-                ),
+                "nothing drives: one body is turned by a given angle: {example}",
+                example='2 = { at = "O", angle = "theta2", … }',
             )
         if len(driven) > 1:
             raise self.refused(
                 places[1],
-                Message(
-                    "two bodies are driven, {name} and {name_2}; one angle or length drives, those of the others follow",
-                    name=driven[0].body,
-                    name_2=driven[1].body,
-                ),
+                "two bodies are driven, {name} and {name_2}; one angle or length drives, those of the others follow",
+                name=driven[0].body,
+                name_2=driven[1].body,
             )
         (found,) = driven
         if found.kind == "turn" and not (turned[found.body].is_name and found.moved.startswith("theta")):
             raise self.refused(
                 ("bodies", found.body),
-                Message(
-                    "the driving angle is a given quantity such as theta2; found {code!r}", code=found.moved
-                ),
+                "the driving angle is a given quantity such as theta2; found {code!r}",
+                code=found.moved,
             )
         return found
 
@@ -152,38 +135,24 @@ class JointReader(TableReader):
             if given[length].value is not None or not (low.is_number and high.is_number):
                 return "", ""
             stated = [f"{low.code} mm", f"{high.code} mm"]
-        form = 'limits = ["300 mm", "500 mm"]'
-        if not isinstance(stated, list) or len(stated) != 2:
+        ends = (
+            zip(stated, ("min", "max"), strict=False) if isinstance(stated, list) and len(stated) == 2 else ()
+        )
+        names = [self._expression(at, v, "mm", f"{length}_{end}", always=True) for v, end in ends]
+        if not names or not all(name.is_name for name in names):
+            form = 'limits = ["300 mm", "500 mm"]'
             raise self.refused(
                 at,
-                Message(
-                    "a driven length goes between its limits: {form}; found {stated!r}",
-                    form=form,
-                    stated=stated,
-                ),
+                "a driven length goes between its limits: {form}; found {stated!r}",
+                form=form,
+                stated=stated,
             )
-        names = []
-        for value, ending in zip(stated, ("min", "max"), strict=True):
-            found = self._expression(at, value, "mm", f"{length}_{ending}", always=True)
-            names.append(found.code)
-            if not found.is_name:
-                raise self.refused(
-                    at,
-                    Message(
-                        "a driven length goes between its limits: {form}; found {stated!r}",
-                        form=form,
-                        stated=stated,
-                    ),
-                )
-        return names[0], names[1]
+        return names[0].code, names[1].code
 
     # -------------------------------------------------------------------- joints
 
     def _jacks(
-        self,
-        ground: Mapping[str, Place],
-        bodies: Mapping[str, BodyEntry],
-        given: Mapping[str, GivenEntry],
+        self, ground: Mapping[str, Place], bodies: Mapping[str, BodyEntry], given: Mapping[str, GivenEntry]
     ) -> dict[str, tuple[BodyEntry, DriverEntry]]:
         """Return the jacks: each as a body that holds both its pins, and as a driver."""
         results = {}
@@ -192,32 +161,28 @@ class JointReader(TableReader):
             form = '2 = { from = "C", to = "B", rod = "3", length = "L" }'
             keys = ("from", "to", "rod", "length")
             if not isinstance(value, Mapping) or not all(isinstance(value.get(k), str) for k in keys):
-                raise self.refused(at, Message("a jack is {form}; found {value!r}", form=form, value=value))
+                raise self.refused(at, "a jack is {form}; found {value!r}", form=form, value=value)
             self.only(value, (*keys, "limits"), at, name)
             start, end, rod, length = (value[key] for key in keys)
             if name in bodies or rod in bodies or rod == name or not (_BODY.match(name) and _BODY.match(rod)):
                 raise self.refused(
                     at,
-                    Message(
-                        "cylinder and rod of a jack are two bodies with names of their own; found {name!r} and {rod!r}",
-                        name=name,
-                        rod=rod,
-                    ),
+                    "cylinder and rod of a jack are two bodies with names of their own; found {name!r} and {rod!r}",
+                    name=name,
+                    rod=rod,
                 )
             points = [*dict.fromkeys([*ground, *(p for b in bodies.values() for p in b.points)])]
             for point in (start, end):
                 if point not in points:
                     raise self.refused(
-                        at, Message("no point {point!r}{found}", point=point, found=nearest(point, points))
+                        at, "no point {point!r}{found}", point=point, found=nearest(point, points)
                     )
             if length not in given or given[length].unit != "mm":
                 raise self.refused(
                     at,
-                    Message(
-                        "the length of a jack is a given quantity, which drives: [given], then {length} = {example}",
-                        length=length,
-                        example='{ from = "300 mm", to = "400 mm" }',
-                    ),
+                    "the length of a jack is a given quantity, which drives: [given], then {length} = {example}",
+                    length=length,
+                    example='{ from = "300 mm", to = "400 mm" }',
                 )
             out = Place(QuantityExpression(length, (length,)))
             entry = BodyEntry(name, {start: Place(), end: out}, start)
@@ -233,11 +198,9 @@ class JointReader(TableReader):
             if not isinstance(value, Mapping):
                 raise self.refused(
                     at,
-                    Message(
-                        'a slide is {point} = {{ of = "4", on = "ground", through = "C", along = "0 deg" }}; found {value!r}',
-                        point=point,
-                        value=value,
-                    ),
+                    'a slide is {point} = {{ of = "4", on = "ground", through = "C", along = "0 deg" }}; found {value!r}',
+                    point=point,
+                    value=value,
                 )
             self.only(value, ("of", "on", "through", "along", "distance", "limits"), at, point)
             names = [*bodies, GROUND]
@@ -245,30 +208,24 @@ class JointReader(TableReader):
             on = GROUND if on == "1" else on
             for body in (of, on):
                 if body not in names:
-                    raise self.refused(
-                        at, Message("no body {body!r}{found}", body=body, found=nearest(body, names))
-                    )
+                    raise self.refused(at, "no body {body!r}{found}", body=body, found=nearest(body, names))
             if of == GROUND or point not in bodies[of].points:
                 raise self.refused(
                     at,
-                    Message(
-                        "the sliding point {point} is a point of body {value}; it has none of this name",
-                        point=point,
-                        value=of or "…",
-                    ),
+                    "the sliding point {point} is a point of body {value}; it has none of this name",
+                    point=point,
+                    value=of or "…",
                 )
             if of == on:
-                raise self.refused(at, Message("body {of} does not slide on itself", of=of))
+                raise self.refused(at, "body {of} does not slide on itself", of=of)
             through, name = self._through(at, value.get("through", ["0 mm", "0 mm"]), on, ground, bodies)
             distance = str(value.get("distance", f"s_{point}"))
             drives = on == GROUND and distance in given and given[distance].unit == "mm"
             if not NAME.match(distance) or (distance in self.units and not drives):
                 raise self.refused(
                     at,
-                    Message(
-                        "distance names the distance along the slide, which follows; found {distance!r}",
-                        distance=distance,
-                    ),
+                    "distance names the distance along the slide, which follows; found {distance!r}",
+                    distance=distance,
                 )
             along = self._expression(at, value.get("along", "0 deg"), "deg", f"delta_{point}")
             results[point] = SlideEntry(point, of, on, through, name, along, distance)
@@ -288,12 +245,10 @@ class JointReader(TableReader):
             if value not in points:
                 raise self.refused(
                     at,
-                    Message(
-                        "body {on} has no point {value!r}{found}",
-                        on=on,
-                        value=value,
-                        found=nearest(value, points),
-                    ),
+                    "body {on} has no point {value!r}{found}",
+                    on=on,
+                    value=value,
+                    found=nearest(value, points),
                 )
             return points[value], value
         return self._place(at, value, (f"a_{at[-1]}", f"a_{at[-1]}", f"e_{at[-1]}", f"gamma_{at[-1]}")), ""
@@ -310,15 +265,13 @@ class JointReader(TableReader):
                 or not isinstance(value.get("radii"), list)
                 or len(value["radii"]) != 2
             ):
-                raise self.refused(at, Message("a gear is {form}; found {value!r}", form=form, value=value))
+                raise self.refused(at, "a gear is {form}; found {value!r}", form=form, value=value)
             self.only(value, ("first", "second", "carrier", "radii", "inner"), at, name)
             names = [*bodies, GROUND]
             pair = [str(value.get(key, GROUND)) for key in ("first", "second", "carrier")]
             for body in pair:
                 if body not in names:
-                    raise self.refused(
-                        at, Message("no body {body!r}{found}", body=body, found=nearest(body, names))
-                    )
+                    raise self.refused(at, "no body {body!r}{found}", body=body, found=nearest(body, names))
             first, second = (
                 self._expression(at, r, "mm", f"R{body}")
                 for r, body in zip(value["radii"], pair, strict=False)

@@ -33,32 +33,26 @@ def linkage_faults(linkage: LinkageFile) -> Iterator[BadInput]:
         points = ", ".join(linkage.bodies[name].points)
         yield linkage.refused(
             ("bodies", name),
-            Message(
-                "body {name} is in the air: it shares none of its points {points} with another body, and does not slide",
-                name=name,
-                points=points,
-            ),
+            "body {name} is in the air: it shares none of its points {points} with another body, and does not slide",
+            name=name,
+            points=points,
         )
     for name, joints in hold.items():
         drives = name == linkage.driver and not linkage.jack
         if len(joints) < 2 and not drives and name not in geared:
             yield linkage.refused(
                 ("bodies", name),
-                Message(
-                    "body {name} hangs on {value} alone; a second point that it shares, or a slide, holds it",
-                    name=name,
-                    value=joints[0],
-                ),
+                "body {name} hangs on {value} alone; a second point that it shares, or a slide, holds it",
+                name=name,
+                value=joints[0],
             )
     crank = linkage.bodies[linkage.driver]
     if linkage.drive.kind == "turn" and crank.at not in linkage.ground:
         yield linkage.refused(
             ("bodies", crank.name),
-            Message(
-                "the driven body {name} turns about a point of the ground; {at} is none",
-                name=crank.name,
-                at=crank.at,
-            ),
+            "the driven body {name} turns about a point of the ground; {at} is none",
+            name=crank.name,
+            at=crank.at,
         )
     if linkage.mobility != 1:
         bodies, pairs, gears = linkage.counts
@@ -67,17 +61,17 @@ def linkage_faults(linkage: LinkageFile) -> Iterator[BadInput]:
         does = Message("nothing moves") if linkage.mobility < 1 else Message("one driver does not settle it")
         yield linkage.refused(
             ("bodies",),
-            Message(
-                "the mechanism has {mobility} degrees of freedom ({count}), a driver moves 1: {does}",
-                mobility=linkage.mobility,
-                count=count,
-                does=does,
-            ),
+            "the mechanism has {mobility} degrees of freedom ({count}), a driver moves 1: {does}",
+            mobility=linkage.mobility,
+            count=count,
+            does=does,
         )
     for name, entry in linkage.assembly.items():
         for point in (name, entry.start, entry.end):
             if point and point not in linkage.points:
                 yield linkage.refused(
                     ("assembly", name),
-                    Message("no point {point!r}{found}", point=point, found=nearest(point, linkage.points)),
+                    "no point {point!r}{found}",
+                    point=point,
+                    found=nearest(point, linkage.points),
                 )

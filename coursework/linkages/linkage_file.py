@@ -22,7 +22,7 @@ from coursework.linkages.expressions import amount
 from coursework.linkages.joint_reader import JointReader
 from coursework.linkages.linkage_faults import linkage_faults
 from coursework.linkages.table_reader import NAME
-from coursework.messages import Message, as_message
+from coursework.messages import as_message
 from coursework.system.toml_files import source_of, table_of
 
 KEYS = (
@@ -99,9 +99,7 @@ class _LinkageReader(JointReader):
         given = self._given()
         ground = self._places(("ground",))
         if not ground:
-            raise self.refused(
-                ("ground",), Message('the ground has points: [ground], then O = ["0 mm", "0 mm"]')
-            )
+            raise self.refused(("ground",), 'the ground has points: [ground], then O = ["0 mm", "0 mm"]')
         bodies = self._bodies(ground)
         jacks = self._jacks(ground, bodies, given)
         bodies = {**bodies, **{name: entry for name, (entry, _) in jacks.items()}}
@@ -131,7 +129,8 @@ class _LinkageReader(JointReader):
         if not isinstance(required, list) or not all(isinstance(r, str) for r in required):
             raise self.refused(
                 ("given", "require"),
-                Message('require = ["r2 < r4", "is_crank(2)"]; found {required!r}', required=required),
+                'require = ["r2 < r4", "is_crank(2)"]; found {required!r}',
+                required=required,
             )
         return tuple(required)
 
@@ -151,11 +150,9 @@ class _LinkageReader(JointReader):
             if len(ends) > 1 or len(set(ways)) < len(ways) or not ways:
                 raise self.refused(
                     at,
-                    Message(
-                        'the ways to assemble {point} are ["left of A -> C", "right of A -> C"]; found {value!r}',
-                        point=point,
-                        value=value,
-                    ),
+                    'the ways to assemble {point} are ["left of A -> C", "right of A -> C"]; found {value!r}',
+                    point=point,
+                    value=value,
                 )
             results[point] = AssemblyEntry(ways, *ends.pop())
         return results, near
@@ -167,10 +164,8 @@ class _LinkageReader(JointReader):
             return "ahead" if match[1] == "ahead of" else "behind", match[2], ""
         raise self.refused(
             at,
-            Message(
-                'a way to assemble is "left of A -> C", "right of A -> C", "ahead of A" or "behind A"; found {text!r}',
-                text=text,
-            ),
+            'a way to assemble is "left of A -> C", "right of A -> C", "ahead of A" or "behind A"; found {text!r}',
+            text=text,
         )
 
     def _near(self, value: Any, drive: DriverEntry) -> NearEntry:
@@ -180,11 +175,9 @@ class _LinkageReader(JointReader):
         if not isinstance(value, Mapping) or key not in value:
             raise self.refused(
                 at,
-                Message(
-                    "the place from which Newton's method starts is {form}; found {value!r}",
-                    form=form,
-                    value=value,
-                ),
+                "the place from which Newton's method starts is {form}; found {value!r}",
+                form=form,
+                value=value,
             )
         driver = self._checked(at, amount, value[key], unit)
         places = {}
@@ -195,12 +188,10 @@ class _LinkageReader(JointReader):
             if not isinstance(place, list) or len(place) != 2:
                 raise self.refused(
                     at,
-                    Message(
-                        "the place from which Newton's method starts is {form}; found {point} = {place!r}",
-                        form=form,
-                        point=point,
-                        place=place,
-                    ),
+                    "the place from which Newton's method starts is {form}; found {point} = {place!r}",
+                    form=form,
+                    point=point,
+                    place=place,
                 )
             x, y = (self._checked(at, amount, each, "mm") for each in place)
             places[point] = complex(x, y)
@@ -211,16 +202,16 @@ class _LinkageReader(JointReader):
     def _ask(self) -> Mapping[str, Any]:
         ask = self._table("ask")
         if not ask:
-            raise self.refused(
-                ("ask",), Message('an exercise asks something: [ask], then positions = ["theta3"], …')
-            )
+            raise self.refused(("ask",), 'an exercise asks something: [ask], then positions = ["theta3"], …')
         self.only(ask, ASKED, ("ask",))
         for key in ("positions", "velocities", "accelerations", "polygon", "instant_centres"):
             value = ask.get(key, [])
             if not isinstance(value, list) or not all(isinstance(each, str) for each in value):
                 raise self.refused(
                     ("ask", key),
-                    Message('{key} is a list of names: ["…", "…"]; found {value!r}', key=key, value=value),
+                    '{key} is a list of names: ["…", "…"]; found {value!r}',
+                    key=key,
+                    value=value,
                 )
         points = ask.get("points", {})
         if not isinstance(points, Mapping) or not all(
@@ -228,7 +219,8 @@ class _LinkageReader(JointReader):
         ):
             raise self.refused(
                 ("ask", "points"),
-                Message("points = {{ theta3 = 2 }} weighs questions; found {points!r}", points=points),
+                "points = {{ theta3 = 2 }} weighs questions; found {points!r}",
+                points=points,
             )
         return ask
 
@@ -242,7 +234,7 @@ class _LinkageReader(JointReader):
         loads = [loads] if isinstance(loads, Mapping) else loads
         form = f'{key} = {{ load = {{ on = "4", moment = "20 N*m" }} }}, or {{ on = "B", force = "100 N", angle = "180 deg" }}'
         if not isinstance(loads, list) or not loads or not all(isinstance(each, Mapping) for each in loads):
-            raise self.refused(at, Message("{form}; found {torque!r}", form=form, torque=torque))
+            raise self.refused(at, "{form}; found {torque!r}", form=form, torque=torque)
         results = []
         for load in loads:
             self.only(load, ("on", "moment", "force", "angle"), at, "load")
@@ -252,11 +244,9 @@ class _LinkageReader(JointReader):
             if ("moment" in load) == ("force" in load) or on not in known:
                 raise self.refused(
                     at,
-                    Message(
-                        "a moment acts on a body, a force at a point: {form}; found {found!r}",
-                        form=form,
-                        found=dict(load),
-                    ),
+                    "a moment acts on a body, a force at a point: {form}; found {found!r}",
+                    form=form,
+                    found=dict(load),
                 )
             results.append(
                 LoadEntry(
@@ -279,7 +269,7 @@ class _LinkageReader(JointReader):
             for c in cases
         ):
             raise self.refused(
-                ("known",), Message("known results are {form}; found {cases!r}", form=form, cases=cases)
+                ("known",), "known results are {form}; found {cases!r}", form=form, cases=cases
             )
         results = []
         for number, case in enumerate(cases):
@@ -291,16 +281,14 @@ class _LinkageReader(JointReader):
                     given[name] = str(value)
                 elif name not in self.units:
                     near = nearest(name, self.units)
-                    raise self.refused(at, Message("no quantity {name!r}{near}", name=name, near=near))
+                    raise self.refused(at, "no quantity {name!r}{near}", name=name, near=near)
                 else:
                     given[name] = self._checked(at, amount, value, self.units[name])
             gives = {}
             for name, value in case["gives"].items():
                 match = re.fullmatch(r"\s*([+-]?\d+(?:\.\d+)?)\s*(\S*)\s*", str(value))
                 if match is None or not NAME.match(name):
-                    raise self.refused(
-                        at, Message("known results are {form}; found {cases!r}", form=form, cases=case)
-                    )
+                    raise self.refused(at, "known results are {form}; found {cases!r}", form=form, cases=case)
                 gives[name] = match[1], match[2]
             results.append((given, gives))
         return tuple(results)

@@ -15,14 +15,7 @@ from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
 
-from coursework.linkages.entries import (
-    GROUND,
-    AssemblyEntry,
-    GivenEntry,
-    LinkageFile,
-    Place,
-    SlideEntry,
-)
+from coursework.linkages.entries import GROUND, AssemblyEntry, GivenEntry, LinkageFile, Place, SlideEntry
 from coursework.linkages.expressions import DEGREES
 from coursework.linkages.groups import groups_of
 from coursework.linkages.terms import Heading, Plane, Sum
@@ -162,8 +155,7 @@ class PointWriter:
         for name in linkage.given:
             if keyword.iskeyword(name) or name in FUNCTIONS or name in _OTHERS:
                 raise linkage.refused(
-                    ("given", name),
-                    Message("{name} means something else; call the quantity otherwise", name=name),
+                    ("given", name), "{name} means something else; call the quantity otherwise", name=name
                 )
         self.groups, self.rank = groups_of(linkage)
         self.quantities: dict[str, Quantity] = {}
@@ -217,11 +209,9 @@ class PointWriter:
                 if top not in (GROUND, name):
                     raise linkage.refused(
                         ("bodies", name),
-                        Message(
-                            "body {name} slides on {top}, which turns it; it has no angle of its own",
-                            name=name,
-                            top=top,
-                        ),
+                        "body {name} slides on {top}, which turns it; it has no angle of its own",
+                        name=name,
+                        top=top,
                     )
                 self.turns[name] = body.angle.code
 
@@ -251,7 +241,8 @@ class PointWriter:
         if name in self.linkage.given:
             raise self.linkage.refused(
                 ("given", name),
-                Message("{name} follows from the mechanism; call the given quantity otherwise", name=name),
+                "{name} follows from the mechanism; call the given quantity otherwise",
+                name=name,
             )
         words = {k: str(v) for k, v in more.pop("words", {}).items()}
         self.quantities[name] = Quantity(name, code, unit, symbol, step, words, **more)
@@ -407,7 +398,9 @@ class PointWriter:
         elif linkage.drive.kind == "slide":
             slide = linkage.slides[linkage.slides_driven]
             track, point = self.track(slide, driver, slide.at), slide.at
-            self.write_slid(track, point, linkage.moved, (linkage.drive.rates[0], linkage.acceleration or "0"), {})
+            self.write_slid(
+                track, point, linkage.moved, (linkage.drive.rates[0], linkage.acceleration or "0"), {}
+            )
             self._finish_rod(driver, point)
 
     def write_end(self, point: str, there: Plane, words: Mapping[str, str], hidden: str) -> None:
@@ -418,12 +411,7 @@ class PointWriter:
             )
 
     def write_slid(
-        self,
-        track: SlideLine,
-        point: str,
-        distance: str,
-        rates: tuple[str, str],
-        words: Mapping[str, str],
+        self, track: SlideLine, point: str, distance: str, rates: tuple[str, str], words: Mapping[str, str]
     ) -> None:
         """Write the place of a point that slides on a placed body, its velocity and its acceleration."""
         told, sign = {**words, "B": point}, "-" if track.sign < 0 else ""

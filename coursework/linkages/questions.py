@@ -73,8 +73,7 @@ class QuestionWriter:
         for name, points in self.linkage.ask.get("points", {}).items():
             if name not in known:
                 raise self.linkage.refused(
-                    ("ask", "points"),
-                    Message("no question {name!r}{found}", name=name, found=nearest(name, known)),
+                    ("ask", "points"), "no question {name!r}{found}", name=name, found=nearest(name, known)
                 )
             for number, question in enumerate(self.questions):
                 if question.name == name:
@@ -83,7 +82,7 @@ class QuestionWriter:
 
     def _ask(self, name: str, key: str, words: Mapping[str, str] | None = None, **fields: str) -> None:
         if any(q.name == name for q in self.questions):
-            raise self.linkage.refused(("ask",), Message("{name} is asked twice", name=name))
+            raise self.linkage.refused(("ask",), "{name} is asked twice", name=name)
         self.questions.append(LinkageQuestion(name, fields, key, words or {}))
 
     # ----------------------------------------------------------------- structure
@@ -128,8 +127,7 @@ class QuestionWriter:
     def _class(self, _: Any) -> None:
         if self.linkage.gears:
             raise self.linkage.refused(
-                ("ask", "class"),
-                Message("Assour groups have pins and slides alone; this mechanism has gears"),
+                ("ask", "class"), "Assour groups have pins and slides alone; this mechanism has gears"
             )
         names = ("I", "II", "III", "IV", "V", "VI")
         rank = names[self.formulas.rank - 1]
@@ -232,11 +230,9 @@ class QuestionWriter:
             example = f'{speed} = "12 rad/s"' if linkage.drive.kind == "turn" else f'{speed} = "12 mm/s"'
             raise linkage.refused(
                 ("ask", key),
-                Message(
-                    "{key} need the speed of the driver: [given], then {example}",
-                    key=key,
-                    example=example,
-                ),
+                "{key} need the speed of the driver: [given], then {example}",
+                key=key,
+                example=example,
             )
 
     @property
@@ -266,12 +262,10 @@ class QuestionWriter:
         listed = [n for n in able if not n.startswith("_")]
         raise self.linkage.refused(
             at,
-            Message(
-                "no quantity {name!r}{found}; there are {found_2}",
-                name=name,
-                found=nearest(name, listed),
-                found_2=", ".join(listed),
-            ),
+            "no quantity {name!r}{found}; there are {found_2}",
+            name=name,
+            found=nearest(name, listed),
+            found_2=", ".join(listed),
         )
 
     # ----------------------------------------------------------------- equations
@@ -282,11 +276,9 @@ class QuestionWriter:
         if not isinstance(wanted, list) or not wanted or any(form not in forms for form in wanted):
             raise self.linkage.refused(
                 ("ask", "equations"),
-                Message(
-                    "equations = true, or a list of {forms}; found {value!r}",
-                    forms=", ".join(forms),
-                    value=value,
-                ),
+                "equations = true, or a list of {forms}; found {value!r}",
+                forms=", ".join(forms),
+                value=value,
             )
         if any(form.endswith("_dot") for form in wanted):
             self._needs_speed("equations")
@@ -294,9 +286,7 @@ class QuestionWriter:
         if not closures:
             raise self.linkage.refused(
                 ("ask", "equations"),
-                Message(
-                    "no loop of this mechanism can be written: its slides go through points without a name"
-                ),
+                "no loop of this mechanism can be written: its slides go through points without a name",
             )
         names = dict.fromkeys(
             n for loop in closures.values() for v in loop for n in (v[0], v[1], v[3]) if n.isidentifier()
@@ -340,8 +330,7 @@ class QuestionWriter:
             )  # fmt: skip
             if match is None or pair is None or pair[0] == pair[1]:
                 raise self.linkage.refused(
-                    at,
-                    Message("an instant centre is I13: two bodies, 1 the ground; found {name!r}", name=name),
+                    at, "an instant centre is I13: two bodies, 1 the ground; found {name!r}", name=name
                 )
             self._centre(name, *pair)
 
@@ -358,12 +347,10 @@ class QuestionWriter:
             if rates[0] == rates[1]:
                 raise self.linkage.refused(
                     ("ask", "instant_centres"),
-                    Message(
-                        "{name} is at infinity in every position: bodies {value} and {value_2} are turned alike",
-                        name=name,
-                        value=words["i"],
-                        value_2=words["j"],
-                    ),
+                    "{name} is at infinity in every position: bodies {value} and {value_2} are turned alike",
+                    name=name,
+                    value=words["i"],
+                    value_2=words["j"],
                 )
             moving = [b for b in (first, second) if b != GROUND]
             if len(moving) == 1:
@@ -413,11 +400,9 @@ class QuestionWriter:
         if body not in turning:
             raise linkage.refused(
                 ("ask", "advantage"),
-                Message(
-                    "the advantage is that of a body that turns: {found}; found {value!r}",
-                    found=", ".join(turning),
-                    value=value,
-                ),
+                "the advantage is that of a body that turns: {found}; found {value!r}",
+                found=", ".join(turning),
+                value=value,
             )
         words = {"body": body, "driver": linkage.driver}
         formulas.write(
@@ -482,7 +467,8 @@ class QuestionWriter:
             if name not in ("velocity", "acceleration"):
                 raise self.linkage.refused(
                     ("ask", "polygon"),
-                    Message("a polygon is of 'velocity' or 'acceleration'; found {name!r}", name=name),
+                    "a polygon is of 'velocity' or 'acceleration'; found {name!r}",
+                    name=name,
                 )
         self._needs_speed("polygon")
         self.polygons = [PolygonWriter(self.formulas, name) for name in dict.fromkeys(names)]

@@ -11,7 +11,6 @@ from typing import Any
 from coursework.errors import BadInput, CourseworkError
 from coursework.linkages.entries import GivenEntry, Place
 from coursework.linkages.expressions import ExpressionReader, QuantityExpression, amount, unit_of
-from coursework.messages import Message
 from coursework.system.toml_files import TomlReader
 
 NAME = re.compile(r"[A-Za-z][A-Za-z0-9]*(?:_[A-Za-z0-9]+)*\Z")
@@ -38,9 +37,7 @@ class TableReader(TomlReader):
         for key in at:
             result = result.get(key, {}) if isinstance(result, Mapping) else {}
         if not isinstance(result, Mapping):
-            raise self.refused(
-                at, Message("{value} is a table; found {result!r}", value=at[-1], result=result)
-            )
+            raise self.refused(at, "{value} is a table; found {result!r}", value=at[-1], result=result)
         self._count(at, result)
         for key, value in result.items():
             if isinstance(value, (Mapping, list)):
@@ -52,19 +49,17 @@ class TableReader(TomlReader):
         if len(value) > _MOST_ENTRIES:
             raise self.refused(
                 at,
-                Message(
-                    "{value} has {count} entries; there are at most {most}",
-                    value=at[-1],
-                    count=len(value),
-                    most=_MOST_ENTRIES,
-                ),
+                "{value} has {count} entries; there are at most {most}",
+                value=at[-1],
+                count=len(value),
+                most=_MOST_ENTRIES,
             )
 
     def _whole(self, key: str, otherwise: int) -> int:
         value = self.table.get(key, otherwise)
         if not isinstance(value, int) or isinstance(value, bool) or value < 1:
             raise self.refused(
-                (key,), Message("{key} is a whole number from 1 on; found {value!r}", key=key, value=value)
+                (key,), "{key} is a whole number from 1 on; found {value!r}", key=key, value=value
             )
         return value
 
@@ -78,17 +73,14 @@ class TableReader(TomlReader):
             or not all(isinstance(t, str) and t for t in title.values())
         ):
             raise self.refused(
-                ("title",),
-                Message("a title in each language: {example}", example='title = { fr = "…", en = "…" }'),
+                ("title",), "a title in each language: {example}", example='title = { fr = "…", en = "…" }'
             )
         for text in title.values():
             if _UNPRINTED.search(text) or len(text) > 120:
                 raise self.refused(
                     ("title",),
-                    Message(
-                        "a title is one line of at most 120 characters without braces; found {text!r}",
-                        text=text[:60],
-                    ),
+                    "a title is one line of at most 120 characters without braces; found {text!r}",
+                    text=text[:60],
                 )
         return title
 
@@ -129,9 +121,7 @@ class TableReader(TomlReader):
                 continue
             at = ("given", name)
             if not NAME.match(name):
-                raise self.refused(
-                    at, Message("{name!r} is no name of a quantity: letters, digits, _", name=name)
-                )
+                raise self.refused(at, "{name!r} is no name of a quantity: letters, digits, _", name=name)
             results[name] = self._entry(at, name, value)
             self.units[name] = results[name].unit
         return results
@@ -144,10 +134,7 @@ class TableReader(TomlReader):
         self.only(value, ("from", "to", "step", "nonzero"), at, name)
         if "from" not in value or "to" not in value:
             raise self.refused(
-                at,
-                Message(
-                    '{name} is "180 mm", or {{ from = "40 mm", to = "70 mm", step = "5 mm" }}', name=name
-                ),
+                at, '{name} is "180 mm", or {{ from = "40 mm", to = "70 mm", step = "5 mm" }}', name=name
             )
         step = value.get("step", value["from"] if False else None)
         units = [self._checked(at, unit_of, v) for v in (value["from"], value["to"], step) if _is_amount(v)]
@@ -156,16 +143,14 @@ class TableReader(TomlReader):
         low, high = (self._expression((*at, key), value[key], unit) for key in ("from", "to"))
         width = self._checked((*at, "step"), amount, step, unit) if step is not None else 1.0
         if not width > 0:
-            raise self.refused((*at, "step"), Message("a step is above 0; found {step}", step=step))
+            raise self.refused((*at, "step"), "a step is above 0; found {step}", step=step)
         if low.is_number and high.is_number and float(low.code) > float(high.code):
             raise self.refused(
                 at,
-                Message(
-                    "{name} goes from the smaller value to the greater; found {value}, {value_2}",
-                    name=name,
-                    value=value["from"],
-                    value_2=value["to"],
-                ),
+                "{name} goes from the smaller value to the greater; found {value}, {value_2}",
+                name=name,
+                value=value["from"],
+                value_2=value["to"],
             )
         exact = f"{Fraction(width).limit_denominator(10**6).numerator / Fraction(width).limit_denominator(10**6).denominator:.9g}"
         positive = unit == "mm" and (not low.is_number or float(low.code) > 0)
@@ -179,7 +164,7 @@ class TableReader(TomlReader):
         )
         if wanted and unit == "1":
             raise self.refused(
-                at, Message('{name} needs a unit: "{value} {unit}"', name=name, value=value, unit=wanted)
+                at, '{name} needs a unit: "{value} {unit}"', name=name, value=value, unit=wanted
             )
 
     # -------------------------------------------------------------------- points
@@ -197,10 +182,7 @@ class TableReader(TomlReader):
     def _check_point(self, at: Sequence[str | int], point: str) -> None:
         if not POINT.match(point):
             raise self.refused(
-                at,
-                Message(
-                    "a point is called by a capital letter, such as A or O2; found {point!r}", point=point
-                ),
+                at, "a point is called by a capital letter, such as A or O2; found {point!r}", point=point
             )
 
     def _place(self, at: Sequence[str | int], value: Any, names: tuple[str, str, str, str]) -> Place:
@@ -218,10 +200,7 @@ class TableReader(TomlReader):
                 angle=self._expression(at, value["angle"], "deg", names[3]),
             )
         raise self.refused(
-            at,
-            Message(
-                'a place is "r2", ["x", "y"] or {{ r = "r5", angle = "beta" }}; found {value!r}', value=value
-            ),
+            at, 'a place is "r2", ["x", "y"] or {{ r = "r5", angle = "beta" }}; found {value!r}', value=value
         )
 
 

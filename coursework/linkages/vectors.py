@@ -10,7 +10,6 @@ from coursework.linkages.formulas import FormulaWriter
 from coursework.linkages.groups import Dyad
 from coursework.linkages.points import Quantity, UsualMistake, names_in
 from coursework.linkages.terms import Heading
-from coursework.messages import Message
 
 PAPER_MM = (160, 90)  #: the box of millimetre paper to draw in
 _FUNCTIONS = {"velocity": "polygon_of_velocities", "acceleration": "polygon_of_accelerations"}
@@ -66,7 +65,7 @@ class PolygonWriter:
         drawn: set[str] = set()
         if self.linkage.drive.kind != "turn":
             raise self.linkage.refused(
-                ("ask", "polygon"), Message("polygons are drawn of mechanisms that a given angle drives")
+                ("ask", "polygon"), "polygons are drawn of mechanisms that a given angle drives"
             )
         yield from self._carried(self.linkage.driver, drawn)
         for group in self.formulas.groups:
@@ -80,9 +79,7 @@ class PolygonWriter:
                 case _:
                     raise self.linkage.refused(
                         ("ask", "polygon"),
-                        Message(
-                            "polygons are drawn of pairs of bars, of sliders on fixed guides, and of guides about a joint"
-                        ),
+                        "polygons are drawn of pairs of bars, of sliders on fixed guides, and of guides about a joint",
                     )
             drawn.add(inner)
             for body in group.bodies:
@@ -182,7 +179,7 @@ class PolygonWriter:
     def _slider(self, group: Dyad, slide: SlideEntry) -> list[DrawnSide]:
         if slide.on != GROUND:
             raise self.linkage.refused(
-                ("ask", "polygon"), Message("polygons are drawn of sliders on fixed guides; this guide moves")
+                ("ask", "polygon"), "polygons are drawn of sliders on fixed guides; this guide moves"
             )
         B = str(group.inner)
         way = f"polar(1, {Heading.of(slide.along.code).code})"

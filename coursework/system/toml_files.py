@@ -122,8 +122,9 @@ class TomlReader:
     def __init__(self, path: Path, source: str) -> None:
         self.path, self.source = path, source
 
-    def refused(self, at: Sequence[str | int], why: str) -> BadInput:
-        why = why if isinstance(why, Message) else Message(why)
+    def refused(self, at: Sequence[str | int], template: str, /, **values: Any) -> BadInput:
+        """Return the error of a key, with file and line: a message, or its template and the values that fill it."""
+        why = template if isinstance(template, Message) else Message(template, **values)
         if line := line_of(self.source, at):
             return BadInput("{file}, line {line}: {problem}", file=self.path, line=line, problem=why)
         return BadInput("{file}: {problem}", file=self.path, problem=why)
@@ -137,7 +138,6 @@ class TomlReader:
                 near = nearest(key, names)
                 if where:
                     raise self.refused(
-                        [*at, key],
-                        Message("no key {key!r} in {table}{near}", key=key, table=where, near=near),
+                        [*at, key], "no key {key!r} in {table}{near}", key=key, table=where, near=near
                     )
-                raise self.refused([*at, key], Message("no key {key!r}{near}", key=key, near=near))
+                raise self.refused([*at, key], "no key {key!r}{near}", key=key, near=near)

@@ -44,17 +44,23 @@ FOR_USERS = {
     "warn",
 }
 
+#: Readers of TOML files, which refuse a key by a template.
+REFUSING = ("issuing/assignment", "linkages/", "platforms/lti/settings", "system/toml_files")
+
 
 def calls():
     for file, tree in trees().items():
         if file.rpartition("/")[2] in ("messages.py", "errors.py"):
             continue
-        for node in ast.walk(tree):
-            name = getattr(node.func, "id", "") if isinstance(node, ast.Call) else ""
-            if (name in FOR_USERS or (name == "WrongValue" and file.startswith("cli/"))) and node.args:
-                first = node.args[0]
+        for node in (n for n in ast.walk(tree) if isinstance(n, ast.Call)):
+            name, arguments, keywords = getattr(node.func, "id", ""), node.args, node.keywords
+            if getattr(node.func, "attr", "") in ("refused", "refused_key") and file.startswith(REFUSING):
+                name, arguments = "Message", arguments[1:]  # behind the key of the file
+                keywords = [word for word in keywords if word.arg != "exercise"]
+            if (name in FOR_USERS or (name == "WrongValue" and file.startswith("cli/"))) and arguments:
+                first = arguments[0]
                 for template in (first.body, first.orelse) if isinstance(first, ast.IfExp) else (first,):
-                    yield f"{file}:{template.lineno}", template, node.keywords
+                    yield f"{file}:{template.lineno}", template, keywords
 
 
 def places(template):

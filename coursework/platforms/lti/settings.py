@@ -181,7 +181,7 @@ class _SettingsReader(TomlReader):
         self.only(table, ("service", "platforms"))
         service, listed = table.get("service", {}), table.get("platforms", [])
         if not isinstance(service, Mapping) or not isinstance(listed, list):
-            raise self.refused(["service"], Message("write [service] with url = …, then [[platforms]]"))
+            raise self.refused(["service"], "write [service] with url = …, then [[platforms]]")
         self.only(service, _SERVICE, ["service"], "[service]")
         platforms = tuple(self.platform(number, entry) for number, entry in enumerate(listed))
         self._check_twice(platforms)
@@ -189,7 +189,8 @@ class _SettingsReader(TomlReader):
         if isinstance(hours, bool) or not isinstance(hours, (int, float)) or not 0 < hours <= 168:
             raise self.refused(
                 ["service", "session_hours"],
-                Message("session_hours is a number up to 168; found {hours!r}", hours=hours),
+                "session_hours is a number up to 168; found {hours!r}",
+                hours=hours,
             )
         return Settings(
             self.path.parent,
@@ -201,12 +202,12 @@ class _SettingsReader(TomlReader):
     def platform(self, number: int, table: Any) -> LTIPlatform:
         key_path: list[str | int] = ["platforms", number]
         if not isinstance(table, Mapping):
-            raise self.refused(key_path, Message("platforms are tables: [[platforms]], then issuer = …"))
+            raise self.refused(key_path, "platforms are tables: [[platforms]], then issuer = …")
         self.only(table, _KEYS, key_path, "[[platforms]]")
         for key in ("issuer", "client_id", "deployments", "auth_url", "token_url", "jwks_url"):
             if not table.get(key):
                 raise self.refused(
-                    key_path, Message("a platform needs {key}; 'coursework lti platform' writes one", key=key)
+                    key_path, "a platform needs {key}; 'coursework lti platform' writes one", key=key
                 )
         urls = {key: self._url([*key_path, key], table[key]) for key in ("auth_url", "token_url", "jwks_url")}
         # The issuer is compared literally, including a slash at its end.
@@ -228,7 +229,7 @@ class _SettingsReader(TomlReader):
     def _truth(self, key_path: Sequence[str | int], value: Any) -> bool:
         if not isinstance(value, bool):
             raise self.refused(
-                key_path, Message("{key} is true or false; found {value!r}", key=key_path[-1], value=value)
+                key_path, "{key} is true or false; found {value!r}", key=key_path[-1], value=value
             )
         return value
 
@@ -237,7 +238,7 @@ class _SettingsReader(TomlReader):
             isinstance(text, (str, int)) and str(text).strip() for text in value
         ):
             raise self.refused(
-                key_path, Message('{key} is a list: ["1"]; found {value!r}', key=key_path[-1], value=value)
+                key_path, '{key} is a list: ["1"]; found {value!r}', key=key_path[-1], value=value
             )
         return tuple(str(text) for text in value)
 
@@ -253,11 +254,9 @@ class _SettingsReader(TomlReader):
             if (platform.issuer, platform.client_id) in seen:
                 raise self.refused(
                     ["platforms", number],
-                    Message(
-                        "{issuer} with client_id {client_id} appears twice; keep one",
-                        issuer=platform.issuer,
-                        client_id=platform.client_id,
-                    ),
+                    "{issuer} with client_id {client_id} appears twice; keep one",
+                    issuer=platform.issuer,
+                    client_id=platform.client_id,
                 )
             seen.add((platform.issuer, platform.client_id))
 
