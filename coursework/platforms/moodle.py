@@ -63,39 +63,34 @@ class Moodle(Platform):
         batches = list(_batches(pools))
         for number, batch in enumerate(batches, start=1):
             part = f".{number:0{len(str(len(batches)))}}" if len(batches) > 1 else ""
-            yield File(Path(f"{pools[0].name}.{languages}{part}.xml"), partial(quiz, *pools, batch=batch))
+            yield File(Path(f"{pools[0].name}.{languages}{part}.xml"), partial(_quiz, batch))
 
 
 PLATFORM = Moodle()
 
-Batch = Sequence[tuple[int, int, int]]  #: section, and its first item and the one after its last
 
-
-def quiz(*pools: Pool, batch: Batch = ()) -> Iterator[bytes]:
-    """Yield the file to import, question by question: those of ``batch``, or all."""
+def _quiz(batch: Sequence[bytes]) -> Iterator[bytes]:
+    """Yield the file to import, question by question."""
     yield b'<?xml version="1.0" encoding="utf-8"?>\n<quiz>\n'
-    for position, first, end in batch or [(k, 0, len(s.items)) for k, s in enumerate(pools[0].sections)]:
-        yield _lines(_category(Document(), _category_names(pools, position)))
-        for k in range(first, end):
-            yield _question_lines(pools, position, k)
+    yield from map(zlib.decompress, batch)
     yield b"</quiz>\n"
 
 
-def _batches(pools: Sequence[Pool]) -> Iterator[Batch]:
-    """Yield the questions of each file, as many as fit into one."""
-    batch: list[tuple[int, int, int]] = []
+def _batches(pools: Sequence[Pool]) -> Iterator[list[bytes]]:
+    """Yield the compressed lines of the questions of each file, as many as fit into one, each section's behind its category."""
+    batch: list[bytes] = []
     size = 0
     for position, section in enumerate(pools[0].sections):
+        category = zlib.compress(_lines(_category(Document(), _category_names(pools, position))))
+        is_begun = False
         for k in range(len(section.items)):
-            bytes_of_question = len(_question_lines(pools, position, k))
-            if batch and size + bytes_of_question > _LARGEST_FILE:
+            lines = _question_lines(pools, position, k)
+            if batch and size + len(lines) > _LARGEST_FILE:
                 yield batch
-                batch, size = [], 0
-            size += bytes_of_question
-            if batch and batch[-1][0] == position:
-                batch[-1] = (position, batch[-1][1], k + 1)
-            else:
-                batch.append((position, k, k + 1))
+                batch, size, is_begun = [], 0, False
+            batch += [zlib.compress(lines)] if is_begun else [category, zlib.compress(lines)]
+            size += len(lines)
+            is_begun = True
     yield batch
 
 

@@ -23,7 +23,7 @@ from coursework.gradebook.grading import grade_files
 from coursework.platforms.exporting import export
 from coursework.platforms.items import item as item_of
 from coursework.platforms.losses import losses
-from coursework.platforms.moodle import PLATFORM, quiz
+from coursework.platforms.moodle import PLATFORM
 from coursework.platforms.pieces import PagePieces
 from coursework.platforms.pools import of_exercises
 from coursework.platforms.posed import CHOICES, COLLECTED, mark_alone
@@ -175,7 +175,8 @@ def test_hostile_labels_and_odd_shares_come_through(tmp_path):
     hostile = replace(given, questions=(*given.questions[:-1], replace(choice, options=options)))
     section = replace(pool.sections[0], items=(PLATFORM.made(hostile, pieces),), title=HOSTILE)
     path = tmp_path / "hostile.xml"
-    path.write_bytes(b"".join(quiz(replace(pool, title="Week 3/4", sections=(section,)))))
+    (file,) = PLATFORM.files(replace(pool, title="Week 3/4", sections=(section,)))
+    path.write_bytes(b"".join(file.make()))
     told = ask("import", course=NAME, file=str(path))
     assert (told["done"], told["said"]) == (True, "")
     (question,) = told["questions"]

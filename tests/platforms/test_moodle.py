@@ -16,7 +16,7 @@ import coursework
 from coursework.language.words import words
 from coursework.platforms import moodle
 from coursework.platforms.items import Pool, item, section
-from coursework.platforms.moodle import PLATFORM, escaped, numerical, quiz
+from coursework.platforms.moodle import PLATFORM, escaped, numerical
 from coursework.platforms.pieces import PagePieces
 from coursework.platforms.pools import of_exercises
 from coursework.platforms.posed import CHOICE, CHOICES, COLLECTED, NUMBER, Interval
@@ -46,8 +46,14 @@ def written():
     return of
 
 
+def quiz(*pools):
+    """The one file of a quiz."""
+    (file,) = PLATFORM.files_of(pools)
+    return b"".join(file.make())
+
+
 def written_of(drawn, lang, **changes):
-    return b"".join(quiz(replace(drawn.pool(lang, PLATFORM), **changes)))
+    return quiz(replace(drawn.pool(lang, PLATFORM), **changes))
 
 
 def questions(data):
@@ -123,7 +129,7 @@ def test_a_long_name_of_a_pool_leaves_identifiers_short_and_different(written):
     for tail in "ab":
         made = PLATFORM.made(replace(given, pool="week " * 40 + tail), pieces)
         pool = Pool("", "", "en", (section([made]),), FOLDERS, COURSE.folder.root)
-        ids |= {one[1] for one in questions(b"".join(quiz(pool))) if one[0] != "category"}
+        ids |= {one[1] for one in questions(quiz(pool)) if one[0] != "category"}
     assert {len(one) for one in ids} == {100}
     assert len(ids) == 2
 
@@ -143,7 +149,7 @@ def filtered(text, lang):
 def check_two_languages(names, tmp_path):
     """What a student reads in a quiz of two languages is what a quiz of their language says, and the boxes judge alike."""
     drawn = of_exercises(COURSE, names, 1, 0, LANGS, None)
-    both = b"".join(quiz(*(drawn.pool(lang, PLATFORM) for lang in LANGS)))
+    both = quiz(*(drawn.pool(lang, PLATFORM) for lang in LANGS))
     found = [one for one in questions(both) if one[0] != "category"]
     for lang in LANGS:
         single = [one for one in questions(written_of(drawn, lang)) if one[0] != "category"]
@@ -176,8 +182,19 @@ def test_every_question_in_two_languages_says_in_each_what_one_of_it_says(name, 
 def test_files_are_small_and_hold_every_question_once(monkeypatch):
     drawn = of_exercises(COURSE, ["grashof", "slotted_mechanism"], 3, 0, LANGS, None)
     pools = [drawn.pool(lang, PLATFORM) for lang in LANGS]
-    whole = [one for one in questions(b"".join(quiz(*pools))) if one[0] != "category"]
-    largest = max(len(b"".join(quiz(*pools, batch=[(1, k, k + 1)]))) for k in range(3))
+    whole = [one for one in questions(quiz(*pools)) if one[0] != "category"]
+    slotted = [pool.sections[1] for pool in pools]
+    largest = max(
+        len(
+            quiz(
+                *(
+                    replace(pool, sections=(replace(s, items=s.items[k : k + 1]),))
+                    for pool, s in zip(pools, slotted, strict=True)
+                )
+            )
+        )
+        for k in range(3)
+    )
     monkeypatch.setattr(moodle, "_LARGEST_FILE", 2 * largest)
     files = {str(file.path): b"".join(file.make()) for file in PLATFORM.files_of(pools)}
     assert [*files] == [f"coursework.en-fr.{k}.xml" for k in range(1, len(files) + 1)]
