@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import json
 import re
 from collections.abc import Collection, Mapping, Sequence
 from typing import Any, NamedTuple
 
 from coursework.linkages.compiled import CompiledLinkage
 from coursework.linkages.entries import GROUND
+from coursework.system.toml_files import toml_value
 
 SPREAD, STEP = 0.2, 5.0  #: of a length that varies: its share to both sides, and its step in mm
 _LISTS = ("positions", "velocities", "accelerations", "polygon", "instant_centres")
@@ -73,10 +73,10 @@ def _middle(match: re.Match[str]) -> str:
 
 def with_titles(text: str, titles: Sequence[tuple[str, str]]) -> str:
     """Return the text with other titles, by language, in place of the line that states them; without any as it is."""
-    stated = ", ".join(f"{lang} = {json.dumps(title, ensure_ascii=False)}" for lang, title in titles if title)
+    stated = {lang: title for lang, title in titles if title}
     if not stated:
         return text
-    line = f"title = {{ {stated} }}"
+    line = f"title = {toml_value(stated)}"
     changed, count = re.subn(r"^title\s*=.*$", lambda _: line, text, count=1, flags=re.MULTILINE)
     return changed if count else f"{line}\n{text}"
 

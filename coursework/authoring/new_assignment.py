@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-import datetime
-import json
-import re
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -13,6 +10,7 @@ from coursework.course.course import Course
 from coursework.course.secrecy import Secret
 from coursework.errors import BadInput
 from coursework.language.words import words
+from coursework.system.toml_files import toml_value
 from coursework.system.writing import write_whole
 
 
@@ -89,37 +87,17 @@ def _head(stem: str, course: Course[Any], sheets: Sequence[str], langs: Sequence
 
 def toml_of(table: Mapping[str, Any]) -> str:
     """Return the table of an assignment as the text of its file, which reads back as the same table."""
-    own = [f"{key} = {_toml(value)}" for key, value in table.items() if key != "exercises"]
+    own = [f"{key} = {toml_value(value)}" for key, value in table.items() if key != "exercises"]
     entries = [
-        "\n".join(["", "[[exercises]]", *(f"{key} = {_toml(value)}" for key, value in exercise.items())])
+        "\n".join(["", "[[exercises]]", *(f"{key} = {toml_value(value)}" for key, value in exercise.items())])
         for exercise in table["exercises"]
     ]
     return "\n".join([*own, *entries, ""])
 
 
-def _toml(value: Any) -> str:
-    if isinstance(value, Mapping):
-        return "{ " + ", ".join(f"{_key(key)} = {_toml(item)}" for key, item in value.items()) + " }"
-    if isinstance(value, list):
-        return "[" + ", ".join(map(_toml, value)) + "]"
-    if isinstance(value, datetime.date):
-        return value.isoformat()
-    if isinstance(value, float) and value.is_integer():
-        return f"{value:.0f}"
-    return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")
-
-
-def _key(name: str) -> str:
-    return name if re.fullmatch(r"[A-Za-z0-9_-]+", name) else _toml(name)
-
-
 def _texts(texts: dict[str, str]) -> str:
     """Return a text, or one a language, as TOML."""
-    if len(set(texts.values())) == 1:
-        return json.dumps(next(iter(texts.values())), ensure_ascii=False)
-    return (
-        "{ " + ", ".join(f"{lang} = {json.dumps(t, ensure_ascii=False)}" for lang, t in texts.items()) + " }"
-    )
+    return toml_value(next(iter(texts.values())) if len(set(texts.values())) == 1 else texts)
 
 
 def _exercise_entry(course: Course[Any], name: str) -> str:

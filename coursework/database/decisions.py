@@ -177,7 +177,7 @@ def store_new_decisions(connection: Connection, assignment_id: int, files: Decis
             known[one[:_STATED]] -= 1
             new_steps += [one] if known[one[:_STATED]] < 0 else []
     gone = [one for one in remembered if known[one[:_STATED]] > 0 and one.kind != WITHDRAWN]
-    taken_back = [step._replace(kind=WITHDRAWN, points=None, reason="") for step in gone]
+    taken_back = [step.withdrawn() for step in gone]
     decide(connection, assignment_id, [*taken_back, *new_steps])
     was = _by_answer(one for one in remembered if one.student)
     now = _by_answer(one._replace(line=0, location="") for one in files.lines if one.student)
@@ -187,8 +187,7 @@ def store_new_decisions(connection: Connection, assignment_id: int, files: Decis
     for on in changed:
         standing = decisions.on(*on)
         if on in was and standing and standing[-1].by in names and standing[-1].kind != WITHDRAWN:
-            withdrawn = was[on][-1]._replace(kind=WITHDRAWN, seed="", points=None, reason="")
-            _store_decision(connection, assignment_id, withdrawn)
+            _store_decision(connection, assignment_id, was[on][-1].withdrawn(seed=""))
         for one in now.get(on, ()):
             _store_decision(connection, assignment_id, one)
     remember_written(connection, assignment_id, files)

@@ -276,8 +276,14 @@ def last_end(publication: Publication, personal: Iterable[Publication]) -> datet
 
 def published(connection: Connection, number: int) -> Publication | None:
     """Return the publication of an assignment; None if the assignment is not published or does not exist."""
-    stored = connection.execute(select(assignment.c.published).where(assignment.c.id == number)).scalar()
-    return None if stored is None else Publication.of(stored)
+    return publications_of(connection, [number]).get(number)
+
+
+def publications_of(connection: Connection, numbers: Sequence[int] | None = None) -> dict[int, Publication]:
+    """Return the publications of those of some assignments that are published; of all assignments if ``numbers`` is None."""
+    query = select(assignment.c.id, assignment.c.published).where(assignment.c.published.is_not(None))
+    query = query if numbers is None else query.where(assignment.c.id.in_(numbers))
+    return {row.id: Publication.of(row.published) for row in connection.execute(query)}
 
 
 def publish(connection: Connection, number: int, publication: Publication | None) -> None:
@@ -450,17 +456,16 @@ def starts(connection: Connection, number: int) -> dict[int, tuple[float, dateti
     return {row.person_id: _times(row) for row in rows}
 
 
-def passing(connection: Connection, numbers: Sequence[int], clock: datetime) -> list[int]:
-    """Return the assignments with a date that has passed and is not recorded."""
-    query = select(assignment.c.id, assignment.c.published).where(assignment.c.id.in_(numbers))
-    rows = connection.execute(query.where(assignment.c.published.is_not(None))).all()
-    publications = {row.id: Publication.of(row.published) for row in rows}
+def passing(
+    connection: Connection, publications: Mapping[int, Publication], times: Mapping[int, datetime]
+) -> list[int]:
+    """Return the assignments with a date that has passed at their time and is not recorded."""
     longer, begun = longer_for(connection, publications), running(connection, publications)
     return [
         number
         for number, one in publications.items()
-        if one.passed([own.closes for own in longer[number].values()], clock)
-        or any(paper.end < clock for paper in begun[number])
+        if one.passed([own.closes for own in longer[number].values()], times[number])
+        or any(paper.end < times[number] for paper in begun[number])
     ]
 
 

@@ -15,6 +15,7 @@ from typing import Any, NamedTuple
 from coursework.errors import BadInput, nearest
 from coursework.gradebook.decision import Decision
 from coursework.gradebook.graded_sheet import Graded
+from coursework.gradebook.questions import Question as Question
 from coursework.gradebook.scale import USUAL_SCALE, exact
 from coursework.issuing.issued import Issued
 from coursework.language.numbers import typed_number
@@ -37,7 +38,6 @@ WIDEST = 100.0  #: accepted half-widths
 #: Verdicts that a wider margin leaves as they are.
 _SETTLED = ("correct", "accepted", "missing", "unreadable", "to_mark")
 
-Question = tuple[str, str]  #: exercise and part
 Margins = Callable[[Sequence[Graded]], Iterable[Mapping[str, float]]]
 
 
@@ -99,14 +99,17 @@ class Adjustments:
             return issued
         adjusted = copy(issued)
         adjusted.records = {key: self._record(key[0], record) for key, record in issued.records.items()}
-        if self._has_scale or (issued.assignment or {}).get("mark"):
-            adjusted.assignment = {**(issued.assignment or {}), "mark": self.scale(issued)}
-            if issued.assignment is None:
-                adjusted.assignment = None
+        if issued.assignment is not None and (self._has_scale or issued.assignment.get("mark")):
+            adjusted.assignment = {**issued.assignment, "mark": self.scale(issued)}
         return adjusted
 
+    @cached_property
+    def _counted_anew(self) -> frozenset[str]:
+        """Exercises of which a question has another weight or does not count as usual."""
+        return frozenset(exercise for exercise, _ in (*self.weights, *self.statuses))
+
     def _record(self, exercise: str, record: Mapping[str, Any]) -> Mapping[str, Any]:
-        if not any(exercise == name for name, _ in (*self.weights, *self.statuses)):
+        if exercise not in self._counted_anew:
             return record
         parts = [
             {**part, "points": 0.0 if (exercise, part["id"]) in self.statuses else self.worth(exercise, part)}
@@ -198,7 +201,7 @@ class Adjustments:
         return graded._replace(lines=lines)
 
     def _weighted(self, graded: Graded) -> Graded:
-        if not any(graded.exercise == name for name, _ in (*self.weights, *self.statuses)):
+        if graded.exercise not in self._counted_anew:
             return graded
         lines, settled = {}, graded.settled
         for part, line in graded.lines.items():

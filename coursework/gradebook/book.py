@@ -25,6 +25,7 @@ from coursework.gradebook.columns import (
     exercise_columns,
     identity,
     own_columns,
+    summary_columns,
 )
 from coursework.gradebook.columns import MARKS_COLUMNS as MARKS_COLUMNS
 from coursework.gradebook.columns import REJECTED_COLUMNS as REJECTED_COLUMNS
@@ -162,7 +163,7 @@ class Gradebook:
         """Return the parts answered in rejected rows alone, by sitting and by variant."""
         issued = self.issued
         unread: dict[Sitting, dict[tuple[str, int], set[str]]] = {}
-        for row in (one.row for one in self.rejected if not self.aside or one not in self.aside):
+        for row in (one.row for one in self.rejected if one not in self.aside):
             student, exercise = issued.student(row.get("student", "")), row.get("exercise", "")
             if not student or not row.get("answer", "").strip():
                 continue
@@ -302,6 +303,13 @@ def _number(points: float) -> float:
     """Return points as tables print them: an integer if possible, else a number."""
     rounded = float(f"{points:g}")
     return int(rounded) if rounded.is_integer() else rounded
+
+
+def summary_table(book: Gradebook) -> tuple[Sequence[str], list[dict[str, Any]]]:
+    """Return the columns and the lines of ``summary.csv``."""
+    rows = list(summary_rows(book))
+    is_provisional = any(row[PROVISIONAL] for row in rows)
+    return summary_columns(book.issued, late=bool(book.charged), provisional=is_provisional), rows
 
 
 def summary_rows(book: Gradebook) -> Iterator[dict[str, Any]]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from datetime import datetime
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from coursework.errors import BadInput
 from coursework.issuing.students import folded
@@ -44,6 +44,10 @@ class Decision(NamedTuple):
     def place(self) -> tuple[str, str, str, str]:
         """Place of a step, whose last one a withdrawal takes back."""
         return self.exercise, self.part, self.seed, " ".join((self.answer or "").split())
+
+    def withdrawn(self, **changes: Any) -> Decision:
+        """Return the step that takes this decision back."""
+        return self._replace(kind=WITHDRAWN, points=None, reason="", **changes)
 
     @property
     def answer_text(self) -> str:

@@ -17,7 +17,7 @@ from coursework.gradebook import book as gradebook
 from coursework.gradebook.book import Gradebook, Sitting
 from coursework.gradebook.changes import CHANGES_COLUMNS, EarlierMarks, History
 from coursework.gradebook.class_marking import marked
-from coursework.gradebook.columns import PROVISIONAL, REJECTED_COLUMNS, marks_columns, summary_columns
+from coursework.gradebook.columns import REJECTED_COLUMNS, marks_columns
 from coursework.gradebook.decisions import (
     DECISIONS_FILE,
     EDITED_FILE,
@@ -189,10 +189,7 @@ def _day(form: FeedbackForm) -> str:
 def _write_counts(
     book: Gradebook, tables: Tables, rejected: TableFile, changes: TableFile | None, history: History
 ) -> None:
-    rows = list(gradebook.summary_rows(book))
-    columns = summary_columns(
-        book.issued, late=bool(book.charged), provisional=any(row[PROVISIONAL] for row in rows)
-    )
+    columns, rows = gradebook.summary_table(book)
     summary = tables.open("summary.csv", columns)
     for row in rows:
         summary.write(row)

@@ -32,7 +32,7 @@ from coursework.database.jobs import (
     waiting,
 )
 from coursework.database.marking import mark_submission
-from coursework.database.publication import Publication, passing
+from coursework.database.publication import passing, publications_of
 from coursework.database.tables import assignment
 from coursework.errors import CourseworkError
 from coursework.site.desk.class_table import computed_table
@@ -51,7 +51,6 @@ _COUNTS = 60.0  #: seconds between two counts of a class that changes all the ti
 _QUIET, _LONGEST = timedelta(seconds=0.5), timedelta(seconds=5)
 _VARIANTS = 100  #: items of the cache: students may share a variant
 _RECENT = timedelta(days=1)
-_PUBLISHED = select(assignment.c.id, assignment.c.published).where(assignment.c.published.is_not(None))
 _AWAY = 2.0  #: seconds before the next try if the database is unavailable
 
 
@@ -109,10 +108,9 @@ class Worker:
         version or course may change them. Older pages are made on request."""
         now = self.site.clock()
         with self.site.store.begin() as connection:
-            for row in connection.execute(_PUBLISHED).all():
-                opens = Publication.of(row.published).opens
-                if opens is not None and opens > now - _RECENT:
-                    prepare_soon(self.site, connection, row.id)
+            for number, publication in publications_of(connection).items():
+                if publication.opens is not None and publication.opens > now - _RECENT:
+                    prepare_soon(self.site, connection, number)
 
     # --------------------------------------------------------------------- jobs
 
@@ -179,13 +177,13 @@ class Worker:
         """Record the dates that have passed, and submit saved answers."""
         now = self.site.clock()
         with self.site.store.reading() as connection:
-            publications = {row.id: Publication.of(row.published) for row in connection.execute(_PUBLISHED)}
-            settling = [number for number, one in publications.items() if one.takes_saved]
-            others = [number for number in publications if number not in settling]
-            passed = [(number, now - SETTLES) for number in passing(connection, settling, now - SETTLES)]
-            passed += [(number, now) for number in passing(connection, others, now)]
-        for number, at in passed:
-            close_passed(self.site, number, at, partial(self._later, number))
+            publications = publications_of(connection)
+            times = {
+                number: now - SETTLES if one.takes_saved else now for number, one in publications.items()
+            }
+            passed = passing(connection, publications, times)
+        for number in passed:
+            close_passed(self.site, number, times[number], partial(self._later, number))
 
     def _later(self, number: int, person: int, fault: Exception) -> None:
         """Queue another try to submit a person's saved answers; its failure is logged."""

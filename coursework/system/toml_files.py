@@ -1,7 +1,9 @@
-"""TOML files that people write: read within limits, with the line of each key for messages."""
+"""TOML files that people write: read within limits, with the line of each key for messages; and values as such a file states them."""
 
 from __future__ import annotations
 
+import datetime
+import json
 import re
 import tomllib
 from collections.abc import Mapping, Sequence
@@ -114,6 +116,23 @@ def _holds_huge(value: Any) -> bool:
     if isinstance(value, (dict, list)):
         return any(map(_holds_huge, value.values() if isinstance(value, dict) else value))
     return isinstance(value, int) and value.bit_length() > 64
+
+
+def toml_value(value: Any) -> str:
+    """Return a text, number, date, list or table as TOML, on one line."""
+    if isinstance(value, Mapping):
+        pairs = (
+            (key if re.fullmatch(r"[A-Za-z0-9_-]+", key) else toml_value(key), toml_value(item))
+            for key, item in value.items()
+        )
+        return "{ " + ", ".join(map(" = ".join, pairs)) + " }"
+    if isinstance(value, (list, tuple)):
+        return "[" + ", ".join(map(toml_value, value)) + "]"
+    if isinstance(value, datetime.date):
+        return value.isoformat()
+    if isinstance(value, float) and value.is_integer():
+        return f"{value:.0f}"
+    return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")
 
 
 class TomlReader:

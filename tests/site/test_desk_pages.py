@@ -81,8 +81,8 @@ def test_a_question_shows_its_answers(desk):
 
 
 def test_statistics_are_those_of_the_report(desk, tmp_path):
-    from coursework.gradebook.book import marks_rows, summary_rows
-    from coursework.gradebook.columns import marks_columns, summary_columns
+    from coursework.gradebook.book import marks_rows, summary_table
+    from coursework.gradebook.columns import marks_columns
     from coursework.gradebook.statistics.marks import read
     from coursework.gradebook.statistics.measures import measure
     from coursework.site.desk.question_page import statistics_of
@@ -91,7 +91,7 @@ def test_statistics_are_those_of_the_report(desk, tmp_path):
     now = class_now(desk.site, desk.number)
     rows = [row for one in now.graded.values() for row in marks_rows(one)]
     (tmp_path / "marks.csv").write_bytes(csv_file(rows, marks_columns(now.issued)))
-    (tmp_path / "summary.csv").write_bytes(csv_file(summary_rows(now.book), summary_columns(now.issued)))
+    (tmp_path / "summary.csv").write_bytes(csv_file(*reversed(summary_table(now.book))))
     of_files, of_class = measure(read(tmp_path)), statistics_of(now)
     for name in ("students", "silent", "unread", "answers", "counts", "without_line", "rejected"):
         assert getattr(of_files, name) == getattr(of_class, name), name

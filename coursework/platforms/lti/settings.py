@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import ipaddress
-import json
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -13,7 +12,7 @@ from urllib.parse import urlsplit
 from coursework.errors import BadInput
 from coursework.messages import Message, as_message
 from coursework.system.headers import origin
-from coursework.system.toml_files import TomlReader, source_of, table_of
+from coursework.system.toml_files import TomlReader, source_of, table_of, toml_value
 
 FILE = "platforms.toml"
 _HOUR = 3600.0
@@ -276,22 +275,11 @@ def as_toml(settings: Settings) -> str:
         "# Platforms where this tool is registered: https://www.imsglobal.org/spec/lti/v1p3",
         "[service]",
     ]
-    lines += [f"url = {_text(settings.url)}  # where browsers find this service"] if settings.url else []
+    lines += [f"url = {toml_value(settings.url)}  # where browsers find this service"] if settings.url else []
     if settings.session_seconds != 12 * _HOUR:
         lines.append(f"session_hours = {settings.session_seconds / _HOUR:g}")
     for entry in settings.platforms:
-        lines += ["", "[[platforms]]", f"name = {_text(entry.name)}", f"issuer = {_text(entry.issuer)}"]
-        lines += [f"client_id = {_text(entry.client_id)}", f"deployments = {_list(entry.deployments)}"]
-        lines += [f"{key} = {_text(getattr(entry, key))}" for key in ("auth_url", "token_url", "jwks_url")]
-        lines += [f"origins = {_list(entry.origins)}"] if entry.origins else []
-        lines += [f"audience = {_text(entry.audience)}"] if entry.audience else []
-        lines += ["emails_verified = true"] if entry.emails_verified else []
+        always = ("name", "issuer", "client_id", "deployments", "auth_url", "token_url", "jwks_url")
+        stated = [*always, *(k for k in ("origins", "audience", "emails_verified") if getattr(entry, k))]
+        lines += ["", "[[platforms]]", *(f"{key} = {toml_value(getattr(entry, key))}" for key in stated)]
     return "\n".join(lines) + "\n"
-
-
-def _text(value: str) -> str:
-    return json.dumps(value, ensure_ascii=False)
-
-
-def _list(values: Sequence[str]) -> str:
-    return f"[{', '.join(map(_text, values))}]"

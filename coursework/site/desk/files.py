@@ -18,9 +18,9 @@ from coursework.database.marking import mark_submission
 from coursework.database.permissions import Permission
 from coursework.database.submissions import insert_submission, rows_of, submissions_of
 from coursework.errors import BadInput, CourseworkError
-from coursework.gradebook.book import marks_rows, rejected_rows, summary_rows
+from coursework.gradebook.book import marks_rows, rejected_rows, summary_table
 from coursework.gradebook.class_points import SCORES, class_points
-from coursework.gradebook.columns import PROVISIONAL, REJECTED_COLUMNS, marks_columns, summary_columns
+from coursework.gradebook.columns import REJECTED_COLUMNS, marks_columns
 from coursework.gradebook.feedback_sheets import write_feedback
 from coursework.gradebook.filling import Filled
 from coursework.gradebook.placing import as_texts
@@ -184,9 +184,7 @@ def _summary(request: Request, now: ClassState) -> bytes:
 
 
 def _summary_table(now: ClassState, spreadsheet: Spreadsheet = SPREADSHEETS["point"]) -> bytes:
-    rows = list(summary_rows(now.book))
-    provisional = any(row[PROVISIONAL] for row in rows)
-    columns = summary_columns(now.adjusted, late=bool(now.charged), provisional=provisional)
+    columns, rows = summary_table(now.book)
     return csv_file(rows, columns, spreadsheet)
 
 

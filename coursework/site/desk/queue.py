@@ -387,7 +387,7 @@ def _undone(request: Request, now: ClassState, filters: Filters) -> Response:
         batch = undoable(connection, now.about.id, request.actor.name)
         if batch:
             by = request.actor.name
-            withdrawn = [b._replace(kind=WITHDRAWN, points=None, reason="", by=by) for b in batch]
+            withdrawn = [b.withdrawn(by=by) for b in batch]
             decide(connection, now.about.id, withdrawn)
             request.note(connection, "undo", assignment=now.about.id, count=len(batch))
     later = class_here(request)

@@ -28,6 +28,7 @@ from coursework.database.publication import (
     StudentAssignment,
     is_over,
     passing,
+    publications_of,
     published,
     record_passed_date,
     running,
@@ -255,7 +256,8 @@ def pass_dates(site: Site, at: datetime, *numbers: int) -> bool:
     if site.has_worker or not is_steady(site.clock):
         return False
     with site.store.reading() as connection:
-        passed = passing(connection, numbers, at)
+        publications = publications_of(connection, numbers)
+        passed = passing(connection, publications, dict.fromkeys(publications, at))
     for number in passed:
         close_passed(site, number, at)
     return bool(passed)
@@ -278,7 +280,7 @@ def close_passed(
         return
     with site.store.reading() as connection:
         publication = published(connection, number)
-        if publication is None or not passing(connection, [number], at):
+        if publication is None or not passing(connection, {number: publication}, {number: at}):
             return
         wrote = unsubmitted_persons(connection, number) if publication.takes_saved else []
         if publication.minutes is not None:  # each closes at another moment: only those that have
