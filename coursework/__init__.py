@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 from coursework.system.distribution import VERSION
 
 if TYPE_CHECKING:
-    from coursework.api import Variant, mistakes, open_course, show_motion, study, worked
+    from coursework.api import Variant, mechanisms, mistakes, open_course, show_motion, study, worked
     from coursework.course.course import Course
     from coursework.errors import CannotAssemble, CourseworkError, NoSolution, Undefined, UnknownName
     from coursework.selfstudy.lessons import compare, plot
@@ -29,6 +29,7 @@ __all__ = [
     "UnknownName",
     "Variant",
     "compare",
+    "mechanisms",
     "mistakes",
     "open_course",
     "plot",
@@ -42,6 +43,7 @@ _HOMES = {
     "Course": "course.course",
     "Variant": "api",
     "compare": "selfstudy.lessons",
+    "mechanisms": "api",
     "mistakes": "api",
     "open_course": "api",
     "plot": "selfstudy.lessons",

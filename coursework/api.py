@@ -41,6 +41,17 @@ def open_course(folder: str | Path | None = None) -> Course[Variant]:
     return opened(folder, Variant)
 
 
+def mechanisms() -> Course[Variant]:
+    """Open the mechanisms that come with the package, each a file to start from: a course whose exercises solve and draw them.
+
+    >>> "klann_leg" in mechanisms()
+    True
+    """
+    from coursework.authoring.linkage_files import LINKAGES
+
+    return open_course(LINKAGES)
+
+
 def study(
     exercise: str,
     *,

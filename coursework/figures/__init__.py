@@ -46,6 +46,9 @@ radius=)`` and ``rotation_arrow(center, radius, from_deg, to_deg, label)``, whos
 **Sections.** ``section(points, label, angle=45)`` a cut body, hatched, its label in a gap of the
 hatching (use ``angle=-45`` for its neighbour); ``ball(center, radius, label)`` a tinted circle.
 
+**Drawn machines.** ``shape(points, shade, closed=True, thin=False)`` a part of any outline and ``disc(center, radius, shade)`` a
+round one, each on those before it; shades are ``none``, ``white``, ``light``, ``mid``, ``dark``, ``black`` and ``glass``.
+
 **Labels** are symbols in a small LaTeX (``r_1``, ``O_4``, ``\\theta_2``, ``\\dot{\\psi}``, ``R+r``), set
 in italics, or plain words (anything with a space, or three letters and more), set upright.
 Each is placed by itself near what it names, on no line and on no other label; one that finds
@@ -60,6 +63,7 @@ from coursework.figures.elements import (
     ball,
     bar,
     contact,
+    disc,
     ground_pivot,
     link,
     pin,
@@ -67,6 +71,7 @@ from coursework.figures.elements import (
     profile,
     rail,
     section,
+    shape,
     slider,
     slot_link,
     wheel,
@@ -103,6 +108,7 @@ __all__ = [
     "circle",
     "contact",
     "dimension",
+    "disc",
     "ground_pivot",
     "line",
     "link",
@@ -114,6 +120,7 @@ __all__ = [
     "rotation_arrow",
     "scale_bar",
     "section",
+    "shape",
     "slider",
     "slot_link",
     "trace",

@@ -10,7 +10,7 @@ from functools import lru_cache
 from typing import TYPE_CHECKING, Any, ClassVar, dataclass_transform
 
 from coursework.errors import CourseworkError, WrongValue
-from coursework.figures.ink import EDGE, PINS, WHITE, Disc, turn
+from coursework.figures.ink import EDGE, PINS, SHADES, WHITE, Disc, turn
 
 if TYPE_CHECKING:
     from coursework.figures.paper import FigurePaper
@@ -143,6 +143,12 @@ def _positive(value: float) -> float:
     return float(value)
 
 
+def _shade(value: str) -> str:
+    if value not in SHADES:
+        raise ValueError
+    return value
+
+
 _READ: dict[str, Callable[[Any], object]] = {
     "complex": complex,
     "float": float,
@@ -151,6 +157,7 @@ _READ: dict[str, Callable[[Any], object]] = {
     "float | None": lambda value: None if value is None else float(value),
     "bool": bool,
     "str | None": _label,
+    "Shade": _shade,
     "tuple[str, str]": lambda value: tuple(map(_label, value)),
     "tuple[complex, ...]": lambda value: tuple(map(complex, value)),
 }
@@ -162,10 +169,12 @@ _ASKED = {
     "float | None": "a number",
     "bool": "true or false",
     "str | None": "a label",
+    "Shade": f"one of {', '.join(SHADES)}",
     "tuple[str, str]": "two labels",
     "tuple[complex, ...]": "points (complex numbers)",
 }
 Positive = float
+Shade = str
 
 
 def circle_points(center: complex, radius: float) -> tuple[complex, ...]:

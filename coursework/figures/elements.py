@@ -10,7 +10,18 @@ import math
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
-from coursework.figures.base import AWAY, BLOCK, NEAR, SLOT, Bars, Element, Positive, circle_points, ring
+from coursework.figures.base import (
+    AWAY,
+    BLOCK,
+    NEAR,
+    SLOT,
+    Bars,
+    Element,
+    Positive,
+    Shade,
+    circle_points,
+    ring,
+)
 from coursework.figures.ink import (
     BAR,
     BARS,
@@ -22,6 +33,7 @@ from coursework.figures.ink import (
     GUIDES,
     MARKS,
     NONE,
+    SHADES,
     SIDES,
     THIN,
     TINT,
@@ -320,3 +332,35 @@ class profile(Element):
         points = tuple(map(paper.at, self.points))
         paper.draw(Path(points, EDGE, TINT, closed=True, layer=FILLS))
         paper.around(self.label, added(points) / len(points), 0.9, area=(*points, points[0]))
+
+
+class shape(Element):
+    """Part of a drawn machine: an outline filled with a shade (see :data:`SHADES`), or an open line.
+
+    Parts lie on one another in the order in which they are drawn, beneath bars, supports and pins.
+    """
+
+    points: tuple[complex, ...]
+    shade: Shade = "light"
+    closed: bool = True
+    thin: bool = False
+
+    def draw(self, paper: FigurePaper) -> None:
+        points, width = tuple(map(paper.at, self.points)), THIN if self.thin else EDGE
+        paper.draw(Path(points, width, SHADES[self.shade], closed=self.closed, layer=FILLS))
+
+
+class disc(Element):
+    """Round part of a drawn machine, filled with a shade."""
+
+    center: complex
+    radius: Positive
+    shade: Shade = "light"
+    thin: bool = False
+
+    def reach(self) -> tuple[complex, ...]:
+        return circle_points(self.center, self.radius)
+
+    def draw(self, paper: FigurePaper) -> None:
+        center, radius = paper.at(self.center), paper.length(self.radius)
+        paper.draw(Disc(center, radius, THIN if self.thin else EDGE, SHADES[self.shade], layer=FILLS))

@@ -18,6 +18,17 @@ HEAD = 2.2  #: length of an arrow head, mm
 FONT = "Libertinus Serif"
 WHITE, TINT, BLACK, NONE = "#fff", "#e4e4e4", "#000", "none"
 
+#: Shades of the parts of a drawn machine.
+SHADES = {
+    "none": NONE,
+    "white": WHITE,
+    "light": TINT,
+    "mid": "#c6c6c6",
+    "dark": "#8f8f8f",
+    "black": "#333",
+    "glass": "#dcebf5",
+}
+
 INSIDE, NAMES, ANGLES, SIDES = range(4)  #: ranks of labels: those with least choice first
 
 # From the bottom to the top of the pile.

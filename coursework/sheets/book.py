@@ -58,6 +58,7 @@ class DrawnPiece:
     figure: Figure | Picture | None = None
     svg: str = ""
     stills: tuple[str, ...] = ()
+    tall: float = 0.0  #: mm that it may take on paper; as any other unless told
     number: str = ""  #: 3.4: the fourth figure of the third lesson; empty in an example and in an answer
 
 

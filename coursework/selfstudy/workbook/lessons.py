@@ -25,6 +25,7 @@ _TITLE = re.compile(r"\A# +[^\n]*\n*")
 #: A paragraph, with the formulas and the words that go on after a colon or a formula.
 _EXPLAINED = re.compile(r".*?(?:(?<!:)\n\n(?!\$\$|[a-zà-ÿ])|\Z)", re.DOTALL)
 _CELL = re.compile(r"(?<!\\)\|")
+_VALUE = re.compile(r"\{=(\w+)\}")
 _HEAD = re.compile(r"^(##+) +(?:(\d+)\. +)?(.*?) *$", re.MULTILINE)
 
 
@@ -53,7 +54,8 @@ def opened(course: Course[Any], name: str, lang: str) -> LessonFile:
         there is not.
     """
     path = lesson_file(course.folder, name, lang)
-    text, file = read_text(path), course.folder.relative(path)
+    file = course.folder.relative(path)
+    text = _with_values(course.folder, name, read_text(path), file)
     blocks = source.blocks(text, file)
     proofread(blocks, file)
     for said, line in lines_of_words(blocks):
@@ -62,6 +64,29 @@ def opened(course: Course[Any], name: str, lang: str) -> LessonFile:
                 location = place_of(said, line, file, f"{link.kind}:{link.name}")
                 _check_link(course.folder, link, lang, location)
     return LessonFile(file, text, blocks)
+
+
+def _with_values(folder: Folder, name: str, text: str, file: str) -> str:
+    r"""Return a lesson's text with ``{=NAME}`` replaced by ``\num{…}`` of what ``values()`` of its module computes.
+
+    Raises
+    ------
+    BadCourse
+        The module computes no such value.
+    """
+    if not _VALUE.search(text):
+        return text
+    values = folder.lesson_module(name).values()
+
+    def write(found: re.Match[str]) -> str:
+        if found[1] not in values:
+            line = 1 + text.count("\n", 0, found.start())
+            raise BadCourse(
+                f"{file}, line {line}: values() of {name}.py has no {found[1]!r}{nearest(found[1], values)}"
+            )
+        return rf"\num{{{values[found[1]]}}}"
+
+    return _VALUE.sub(write, text)
 
 
 def lesson_text(course: Course[Any], name: str, lang: str) -> LessonText:

@@ -34,6 +34,7 @@ from coursework.sheets.book import DrawnPiece, Piece, PrintedPiece, ProsePiece
 STILLS = 4  #: instants of what moves that stand on paper
 _CELL = (82.0, 60.0)  #: the room of one of them, mm
 _ASKED = ("seed", "motion", "count")
+_TALL = "tall"  #: option of a lesson's own figure: its height on paper, mm
 
 
 def drawn(course: Course[Any], lesson: str, image: LessonImage, lang: str) -> DrawnPiece:
@@ -58,12 +59,19 @@ def _of_lesson(course: Course[Any], lesson: str, image: LessonImage, lang: str) 
             "the figure {name} has no caption, which describes it to those who cannot see it",
             name=image.name,
         )
+    for name in image.asked.keys() - {_TALL}:
+        raise BadInput(
+            "a picture has no option {name!r}{nearest}", name=name, nearest=nearest(name, (_TALL,))
+        )
+    tall = image.asked.get(_TALL, "0")
+    if not tall.isdecimal():
+        raise BadInput("the height of a picture is a whole number of mm; found {tall!r}", tall=tall)
     created = _call(course.folder, lesson, image.name)
     if isinstance(created, Picture):
         created = created.beside(course.folder.lesson_place)
     text = plain_line(image.caption, lang)
     if isinstance(created, (Figure, Picture)):
-        return DrawnPiece(text, image.caption, figure=created)
+        return DrawnPiece(text, image.caption, figure=created, tall=float(tall))
     if isinstance(created, Sequence) and created and all(isinstance(item, Figure) for item in created):
         return _moving(created, text, image.caption, lang)
     raise BadCourse(
