@@ -60,8 +60,10 @@ def pytest_collection_modifyitems(config, items):
 
     Every process finds the same tests in the same order, and the same share, since it goes by their names.
     """
-    if hasattr(config, "workerinput"):
-        items.sort(key=lambda item: item.path)
+    if hasattr(
+        config, "workerinput"
+    ):  # the site's first: a worker that has nothing left takes from the end of another's
+        items.sort(key=lambda item: ("site" not in item.path.parts, item.path))
     mark_sweeps(items, set(coursework.open_course().names))
     yield
     told = re.fullmatch(r"(\d+)/([1-9]\d*)", config.option.share)

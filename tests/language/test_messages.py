@@ -9,7 +9,7 @@ from collections import Counter
 
 import click
 import pytest
-from package_trees import trees
+from package_trees import FILES, all_nodes, nodes
 
 from coursework.cli.commands import commands
 from coursework.cli.help_pages import paragraphs
@@ -49,10 +49,10 @@ REFUSING = ("issuing/assignment", "linkages/", "platforms/lti/settings", "system
 
 
 def calls():
-    for file, tree in trees().items():
+    for file, found in nodes(ast.Call).items():
         if file.rpartition("/")[2] in ("messages.py", "errors.py"):
             continue
-        for node in (n for n in ast.walk(tree) if isinstance(n, ast.Call)):
+        for node in found:
             name, arguments, keywords = getattr(node.func, "id", ""), node.args, node.keywords
             if getattr(node.func, "attr", "") in ("refused", "refused_key") and file.startswith(REFUSING):
                 name, arguments = "Message", arguments[1:]  # behind the key of the file
@@ -107,17 +107,17 @@ NOT_MESSAGES = {
 }
 
 
-def sentences(tree):
+def sentences(file):
     """Yield the English sentences in the code of a file that are neither documentation nor help of a command."""
     skipped = set()
-    for node in ast.walk(tree):
+    for node in all_nodes(file):
         if isinstance(node, ast.Expr) and isinstance(node.value, ast.Constant):
             skipped.add(id(node.value))
         elif isinstance(node, ast.keyword) and node.arg in ("help", "epilog"):
             skipped.update(map(id, ast.walk(node.value)))
         elif isinstance(node, ast.JoinedStr):
             skipped.update(map(id, node.values))
-    for node in ast.walk(tree):
+    for node in all_nodes(file):
         if id(node) in skipped:
             continue
         if isinstance(node, ast.JoinedStr):
@@ -135,9 +135,9 @@ def test_each_sentence_that_an_instructor_reads_stands_in_the_catalogue(lang):
     known = {*translations(lang), *NOT_MESSAGES, *ADDITIONS.values(), LANGUAGE_DEFAULT}
     found = {
         f"{file}:{line}": text
-        for file, tree in trees().items()
+        for file in FILES
         if file.startswith(tuple(f"{room}/" for room in READ_BY_INSTRUCTORS))
-        for line, text in sentences(tree)
+        for line, text in sentences(file)
         if text not in known
     }
     assert found == {}

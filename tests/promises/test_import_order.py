@@ -3,7 +3,7 @@
 import ast
 from functools import cache
 
-from package_trees import FILES, trees
+from package_trees import FILES, all_nodes
 from tables import each_row
 
 #: From the ground up.
@@ -18,13 +18,14 @@ def room_of(file):
 
 
 @cache
-def imported(tree):
-    """The modules of the package that a file imports, at its top, inside functions or for types alone, with the line."""
-    return [*_imported(tree)]
+def imported(file):
+    """The modules of the package that a file imports, with the line."""
+    return [*imports(all_nodes(file))]
 
 
-def _imported(tree):
-    for node in ast.walk(tree):
+def imports(found):
+    """The modules of the package that are imported at the top, inside functions or for types alone, with the line."""
+    for node in found:
         if isinstance(node, ast.Import):
             yield from (
                 (alias.name, node.lineno) for alias in node.names if alias.name.split(".")[0] == "coursework"
@@ -38,27 +39,30 @@ def _imported(tree):
                 yield (whole if file_of(whole) else node.module), node.lineno
 
 
+STEMS = frozenset(FILES)
+
+
 @cache
 def file_of(module):
     stem = "/".join(module.split(".")[1:])
     if not stem:
         return "__init__.py"
-    return next((f for f in (f"{stem}.py", f"{stem}/__init__.py") if f in FILES), None)
+    return next((f for f in (f"{stem}.py", f"{stem}/__init__.py") if f in STEMS), None)
 
 
-def upward(file, tree):
-    """What a file imports from above."""
+def upward(file, found):
+    """What is imported from above the file."""
     floor = ROOMS.index(room_of(file))
     return [
         f"coursework/{file}:{line} imports {module} from above"
-        for module, line in imported(tree)
+        for module, line in found
         if ROOMS.index(room_of(file_of(module) or module.split(".")[1])) > floor
     ]
 
 
 @each_row("file", FILES)
 def test_a_file_imports_from_its_own_room_and_from_rooms_below(file):
-    assert not upward(file, trees()[file])
+    assert not upward(file, imported(file))
 
 
 @each_row(
@@ -72,7 +76,7 @@ def test_a_file_imports_from_its_own_room_and_from_rooms_below(file):
     ],
 )
 def test_a_planted_import_from_above_is_found(planted):
-    assert upward("marking/marking.py", ast.parse(planted))
+    assert upward("marking/marking.py", imports(ast.walk(ast.parse(planted))))
 
 
 def test_every_file_stands_in_a_room():
@@ -80,7 +84,7 @@ def test_every_file_stands_in_a_room():
 
 
 def test_no_files_import_each_other_in_a_circle():
-    needs = {f: {file_of(m) for m, _ in imported(tree)} - {None, f} for f, tree in trees().items()}
+    needs = {f: {file_of(m) for m, _ in imported(f)} - {None, f} for f in FILES}
     while needs:
         free = {f for f, others in needs.items() if not others & needs.keys()}
         assert free, f"these import each other: {', '.join(sorted(needs))}"

@@ -4,7 +4,7 @@ import ast
 import re
 from collections import defaultdict
 
-from package_trees import trees
+from package_trees import nodes, trees
 
 #: The public name of a variant is the class that course authors and notebooks see, and extends the course's own.
 IN_TWO_FILES = {"Variant"}
@@ -27,10 +27,9 @@ DEFINITIONS = (ast.Module, ast.ClassDef, ast.FunctionDef, ast.AsyncFunctionDef)
 
 def test_a_class_name_stands_in_one_file():
     files = defaultdict(set)
-    for file, tree in trees().items():
-        for node in ast.walk(tree):
-            if isinstance(node, ast.ClassDef):
-                files[node.name].add(file)
+    for file, classes in nodes(ast.ClassDef).items():
+        for node in classes:
+            files[node.name].add(file)
     shared = {name: sorted(where) for name, where in files.items() if len(where) > 1}
     assert {name: where for name, where in shared.items() if name not in IN_TWO_FILES} == {}
 
@@ -38,9 +37,9 @@ def test_a_class_name_stands_in_one_file():
 def test_a_docstring_begins_with_a_verb_or_a_noun_and_no_clause():
     clauses = [
         (file, text.splitlines()[0])
-        for file, tree in trees().items()
-        for node in ast.walk(tree)
-        if isinstance(node, DEFINITIONS) and (text := ast.get_docstring(node)) and CLAUSE.match(text)
+        for file, definitions in nodes(DEFINITIONS).items()
+        for node in definitions
+        if (text := ast.get_docstring(node)) and CLAUSE.match(text)
     ]
     assert clauses == []
 
