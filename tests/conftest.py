@@ -141,6 +141,7 @@ def _forget_ended_runs():
 
 @pytest.hookimpl(trylast=True)
 def pytest_sessionfinish(session, exitstatus):
+    gc.freeze()  # what goes with the process is not looked at five times more
     if place := session.config.stash.get(_PLACE, ""):
         if exitstatus in (pytest.ExitCode.OK, pytest.ExitCode.NO_TESTS_COLLECTED):
             shutil.rmtree(place, ignore_errors=True)

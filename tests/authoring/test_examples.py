@@ -50,6 +50,7 @@ def test_it_lists_its_four_exercises_in_both_languages(copied, capsys):
     assert all({*entry["title"]} == {"fr", "en"} for entry in listed)
 
 
+@pytest.mark.e2e
 def test_it_builds_in_every_format_and_language(built):
     names = {path.relative_to(built / "handouts").as_posix() for path in built.glob("handouts/*/*")}
     for exercise in EXERCISES:
@@ -179,6 +180,7 @@ def marks(copied, tmp_path_factory):
 
 
 @each_row("exercise", EXERCISES)
+@pytest.mark.e2e
 def test_right_answers_are_marked_right_by_the_command_line(marks, exercise):
     of_it = [mark for mark in marks if mark["exercise"] == exercise]
     assert len({mark["seed"] for mark in of_it}) == 4

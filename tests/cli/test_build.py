@@ -11,6 +11,7 @@ from class_of_three import filled, table, tree
 from coursework.cli.make import build
 
 
+@pytest.mark.e2e
 def test_build_writes_the_tree_of_the_contract(built):
     files = tree(built)
     assert {"issued.json", "answers.csv", "instructor/key.json", "instructor/key.csv"} <= set(files)

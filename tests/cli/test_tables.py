@@ -80,6 +80,7 @@ def rows_of(path, delimiter):
 
 
 @each_row("sign", SPREADSHEETS)
+@pytest.mark.e2e
 def test_every_table_has_the_mark_without_which_excel_damages_accents(written, sign):
     assert set(written[sign]) == TABLES
     for name, path in written[sign].items():

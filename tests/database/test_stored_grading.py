@@ -103,6 +103,7 @@ def accepted(*lines):
     ]
 
 
+@pytest.mark.e2e
 def test_round_by_round_the_files_are_those_of_all_at_once(one):
     first = one.file(
         "first.csv", [*one.rows("Ana", why="It stores.", Z="somewhere"), *one.rows("Ben", M="", why="Heat.")]

@@ -37,6 +37,8 @@ from coursework.sheets.following import follows_from
 from coursework.sheets.handout import handout
 from coursework.sheets.sheet import Lesson
 
+pytestmark = pytest.mark.e2e
+
 COURSE = coursework.open_course()
 NAMES = ("slotted_mechanism", "grashof")
 PARTS = ("rA", "theta4")

@@ -8,6 +8,8 @@ import pytest
 from coursework.cli import run
 from coursework.issuing import dry_run
 
+pytestmark = pytest.mark.e2e
+
 ROSTER = """student,number,group,Salle,place,tiers temps
 Ada Lovelace,N9101,TD 10,Amphi B,A2,
 Bo Diddley,N9102,TD 2,Amphi B,A1,oui

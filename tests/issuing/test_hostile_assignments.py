@@ -46,6 +46,7 @@ def test_a_value_that_is_refused_is_quoted_in_short(course, key, value):
 
 @each_row("key", ["name", "parts", "points", "seed", "x" * 10**5])
 @each_row("value", ["x" * 10**6, ["x" * 10**6], {"x" * 10**6: 1}])
+@pytest.mark.e2e
 def test_so_is_a_value_in_an_exercise(course, key, value):
     with pytest.raises(BadInput) as told:
         assignment_of("week3", {"exercises": [{"name": "grashof", key: value}]}, course)

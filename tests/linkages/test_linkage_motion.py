@@ -39,6 +39,7 @@ def _rate(name, order):
 
 
 @each_row("name", NAMES)
+@pytest.mark.e2e
 def test_rates_and_accelerations_are_the_differences_of_positions(name):
     """Of seven points of a polynomial through positions a third of a degree apart, with the driver at a constant rate."""
     exercise = course()[name]

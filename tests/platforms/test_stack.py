@@ -53,6 +53,7 @@ def asked(drawn, read, lang):
 
 
 @each_row("lang", LANGS)
+@pytest.mark.e2e
 def test_a_question_a_variant_asks_all_parts_and_is_worth_those_it_judges(drawn, read, lang):
     assert len(read[lang][0]) == 10
     assert len(read[lang][1]) == 5

@@ -205,6 +205,7 @@ def test_the_same_file_gives_the_same_bytes_and_another_of_its_name_shares_nothi
     assert re.search(r'^# .*\n# .*\nsecret = "[0-9a-f]{32}"$', text, re.MULTILINE)  # told in both languages
 
 
+@pytest.mark.e2e
 def test_a_file_without_a_secret_has_one_beside_it_and_goes_on_with_it(tmp_path, capsys):
     path = stated(tmp_path)
     (tmp_path / "class.csv").write_text(ROSTER, "utf-8")

@@ -118,6 +118,7 @@ def test_exercises_count_not_papers():
     assert list(booklets.parted("class.fr", "ab", 8, 7)) == [("class.fr.1-1", "a"), ("class.fr.2-2", "b")]
 
 
+@pytest.mark.e2e
 def test_the_table_of_pages_has_a_line_for_each_sheet_whichever_booklet_holds_it(
     course, tmp_path, monkeypatch
 ):

@@ -74,6 +74,7 @@ def together(pages: list[str], words_of: list[str]) -> bool:
 
 @every_language
 @seeds(2, 6)
+@pytest.mark.e2e
 def test_a_question_and_all_that_is_said_of_it_stand_on_one_page(lang, seeds):
     for seed in seeds:
         sheet = synthetic(lang, 25, seed)

@@ -98,6 +98,7 @@ def test_rows_whose_height_is_told_hold_their_cells_on_one_line(lang):
 
 @pytest.mark.parametrize("lang", sampled(["fr", "en"], ["fr"]))
 @at_once(COURSE.names, COURSE.names[::4])
+@pytest.mark.e2e
 def test_data_stand_beside_the_widest_figure(lang, names):
     """A line of data that is not to be broken leaves the figure its room."""
     lines = {}

@@ -18,6 +18,8 @@ from coursework.scanning import page_reading
 from coursework.scanning import scan as scanning
 from coursework.scanning.scan import scan
 
+pytestmark = pytest.mark.e2e
+
 ZOE, MAX, EVIL = "Zoé Öztürk", "Max <b>", "=cmd()|x"
 SURE = {"rA": "319.8", "theta4": "104", "guide": "b"}
 DOUBTFUL = {**SURE, "theta4": "~104"}

@@ -195,6 +195,7 @@ def test_a_copy_is_known_however_it_is_turned(turn, built, tmp_path):
     assert [line.split(",")[2] for line in told[1:]] == ["answers", "copy"]
 
 
+@pytest.mark.e2e
 def test_a_page_on_which_something_was_added_is_no_copy(built, places, tmp_path):
     rng = np.random.default_rng(4)
     sheet = built[1]["Zoé"].copy()

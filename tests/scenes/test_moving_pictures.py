@@ -21,6 +21,8 @@ from coursework.figures.text import read
 from coursework.scenes.animation import _without_sizes
 from coursework.scenes.gauges import EFFECTS
 
+pytestmark = pytest.mark.e2e
+
 #: A crank, a coupler, and the film of a ball always; all that move, slow.
 few_moving = pytest.mark.parametrize(
     "name", sampled(MOVING, ["slotted_mechanism", "four_bar_motion", "ball_reducer"])

@@ -20,6 +20,7 @@ def framed(shown):
 
 
 @pytest.mark.parametrize("lang", sampled(["fr", "en"], ["fr"]))
+@pytest.mark.e2e
 def test_a_notebook_moves_the_figure_alone_until_all_is_answered(lang, here):
     study = coursework.study("four_bar_motion", seed=3, lang=lang)
     shown = study.motion("acceleration")
@@ -37,6 +38,7 @@ def test_a_notebook_moves_the_figure_alone_until_all_is_answered(lang, here):
 
 
 @pytest.mark.parametrize("lang", sampled(["fr", "en"], ["fr"]))
+@pytest.mark.e2e
 def test_a_notebook_shows_no_motion_that_is_the_answer(lang, here):
     study = coursework.study("coupler_curve", seed=3, lang=lang)
     assert [*study.motion().bundles()[0]] == ["text/plain", "text/markdown"]

@@ -22,6 +22,8 @@ from coursework.language.words import texts_of, words
 from coursework.rendering.renderer import renderer_of
 from coursework.system.distribution import DISTRIBUTION, pip_install
 
+pytestmark = pytest.mark.e2e
+
 COURSE = coursework.open_course()
 every_exercise = pytest.mark.parametrize("name", COURSE.names)
 
@@ -62,7 +64,6 @@ def test_a_self_study_notebook_runs_from_top_to_bottom_twice(name, lang, here):
     assert run_cells(cells) == run_cells(cells)
 
 
-@pytest.mark.e2e
 @pytest.mark.parametrize(
     ("name", "lang"), [("slotted_mechanism", "en"), pytest.param("mobility", "fr", marks=slow)]
 )

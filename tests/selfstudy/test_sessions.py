@@ -103,6 +103,7 @@ def test_a_deliberate_error_shows_no_traceback_in_a_notebook():
     assert line == "CourseworkError: too long"
 
 
+@pytest.mark.e2e
 def test_fresh_variants_are_worth_issuing_all_different_and_the_same_for_ever(here):
     session = coursework.study("four_bar_motion", seed=3, lang="en")
     fresh = [session.fresh(k).variant for k in range(1, 6)]

@@ -14,6 +14,8 @@ from coursework.database.assignments import put_issued
 from coursework.language.words import words
 from coursework.site.mechanisms.mechanism_view import CheckedBoxes, mechanism_view
 
+pytestmark = pytest.mark.e2e
+
 TEXT = words("en", "site")["mechanisms"]["start"]
 
 
@@ -69,7 +71,6 @@ NAMES = [
 
 
 @each_row("name", [n for n in NAMES if n.strip() == n])
-@pytest.mark.e2e
 def test_a_name_leads_nowhere_else(name, tmp_path_factory):
     own = OwnCourse(tmp_path_factory.mktemp("own"))
     before = sorted(own.folder.parent.rglob("*"))
@@ -129,7 +130,6 @@ def test_a_script_in_a_file_is_text_on_its_page(own):
     assert "<script>alert" not in reply.text
 
 
-@pytest.mark.e2e  # it takes the processor time that a text may take
 def test_endless_work_is_stopped(own, own_process):
     many = "\n".join(f'q{k} = {{ from = "1 mm", to = "9 mm", step = "0.000001 mm" }}' for k in range(90))
     impossible = ", ".join(f'"q{k} * q{k + 1} < -1 mm * 1 mm"' for k in range(80))

@@ -271,6 +271,7 @@ def test_the_motion_shows_paths_vectors_and_values_when_all_is_right(class_of_th
     assert all(told in after for told in ("data-reading", "data-effect", "data-key", "data-point"))
 
 
+@pytest.mark.e2e
 def test_a_motion_that_is_itself_an_answer_comes_after_it(class_of_three):
     zoe = Practising(class_of_three, class_of_three.browser(ZOE), "coupler_curve")
     place, (part,) = f"{zoe.address}/motion", [p for p in zoe.variant.parts if p.id == "curve"]

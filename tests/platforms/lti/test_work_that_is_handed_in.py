@@ -139,6 +139,7 @@ def test_feedback_on_an_exercise_waits_for_no_worker(tool, visitor):
     assert tool.send() == (1, 0)
 
 
+@pytest.mark.e2e
 def test_in_a_rush_an_exercise_is_acknowledged_and_its_page_reloads_until_the_worker_has_marked_it(
     tool, monkeypatch
 ):

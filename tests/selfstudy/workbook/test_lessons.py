@@ -113,6 +113,7 @@ def test_every_exercise_leads_to_its_lesson_and_back(course):
             assert name in section.exercises
 
 
+@pytest.mark.e2e
 def test_lessons_are_listed_and_written(tmp_path, capsys):
     assert run(["lesson"]) == 0
     assert set(capsys.readouterr().out.split()) == set(LESSONS)
