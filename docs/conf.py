@@ -65,6 +65,8 @@ _PARAMETERS = re.compile(r"<dl>((?:\s*<dd>.*?</dd>)+\s*)</dl>", re.DOTALL)
 
 def _for_everybody(app, pagename, templatename, context, doctree):
     """What scrolls sideways is reached by keyboard; the parameters of a signature are no list of definitions."""
+    if pagename.endswith(".fr"):
+        context["language"] = "fr"
     body = context.get("body", "")
     body = body.replace("<pre>", '<pre tabindex="0">')
     body = body.replace('<div class="table-wrapper', '<div tabindex="0" class="table-wrapper')
@@ -78,7 +80,17 @@ def _for_everybody(app, pagename, templatename, context, doctree):
     )
 
 
+#: What stands in French before its marks and within its quotation marks: a space that does not break. Code stays.
+_FRENCH = re.compile(r"(^(`{3,}).*?^\2$|`[^`\n]*`)|(?<=\S) (?=[;:!?»](?:\s|$))|(?<=«) ", re.MULTILINE | re.DOTALL)
+
+
+def _french(app, docname, source):
+    if docname.endswith(".fr"):
+        source[0] = _FRENCH.sub(lambda m: m[1] or "\N{NARROW NO-BREAK SPACE}", source[0])
+
+
 def setup(app):
+    app.connect("source-read", _french)
     app.add_html_math_renderer("mathml", (_mathml, None), (_mathml, None))
     app.connect("html-page-context", _for_everybody)
     app.connect("autodoc-process-docstring", _as_written, priority=400)

@@ -22,6 +22,7 @@ from coursework.cli.commands import commands as cli
 from coursework.course.marking_rules import Rules
 from coursework.errors import BadInput
 from coursework.issuing.assignment import OPTIONS, read_assignment
+from coursework.language.words import file_of
 from coursework.markup.mathml import to_mathml
 from coursework.rendering.renderer import renderer_of
 
@@ -200,7 +201,11 @@ def test_what_check_is_shown_to_print_is_what_it_prints(page, course, tmp_path, 
     assert capsys.readouterr().out == printed
 
 
-HOUR = DOCS / "first_hour.md"
+HOURS = [
+    (DOCS / "first_hour.md", "en_US.UTF-8", "week3", "returned"),
+    (DOCS / "first_hour.fr.md", "fr_FR.UTF-8", "semaine3", "rendus"),
+]
+NO_BREAK = re.compile("[\N{NO-BREAK SPACE}\N{NARROW NO-BREAK SPACE}]")
 ROW_OF_MARKS = re.compile(
     r"^\| (\w+) \| `(\w+)` \| (.*?) \| (.*?) \| `([\w:]+)` \| ([\d.]+) \| (.*) \|$", re.M
 )
@@ -210,44 +215,47 @@ def tables(text: str) -> list[dict[str, str]]:
     return list(csv.DictReader(text.splitlines()))
 
 
-def sample(start: str) -> str:
-    """The block of the page that begins so."""
-    (found,) = (block for block in blocks(HOUR, "text") if block.startswith(start))
+def sample(page: Path, start: str) -> str:
+    """The block of a page that begins so."""
+    (found,) = (block for block in blocks(page, "text") if block.startswith(start))
     return found
 
 
-def hand_in(answers: dict[tuple[str, str], str]) -> None:
+def hand_in(answers: dict[tuple[str, str], str], typed: dict[str, str], built: str, returned: str) -> None:
     """A folder of what came back: a notebook of Smith, a table of the others with one name mistyped."""
-    Path("returned").mkdir()
+    Path(returned).mkdir()
     rows = [
         row | {"answer": answers.get((row["student"], row["part"]), row["answer"])}
-        for row in filled(Path("week3"))
+        for row in filled(Path(built))
     ]
     paper = [row for row in rows if row["student"] != "smith"]
-    write_rows(Path("returned/paper.csv"), [*paper, paper[0] | {"student": "durant"}])
-    notebook = Path("week3/handouts/slotted_mechanism/smith.en.ipynb").read_text("utf-8")
-    typed = dict(re.findall(r'^    "(\w+)": "(.*)",$', sample("# Your answers"), re.M))
+    write_rows(Path(returned, "paper.csv"), [*paper, paper[0] | {"student": "durant"}])
+    notebook = Path(built, "handouts/slotted_mechanism/smith.en.ipynb").read_text("utf-8")
     own = [row for row in rows if row["student"] == "smith"]
     names = re.findall(r'"    \\"(\w+)\\": \\"\\",', notebook)
     for name, row in zip(names, own, strict=True):
         answer = typed.pop(name, row["answer"])
         notebook = notebook.replace(rf'"    \"{name}\": \"\",', rf'"    \"{name}\": \"{answer}\",')
     assert typed == {}
-    Path("returned/smith.ipynb").write_text(notebook, "utf-8")
+    Path(returned, "smith.ipynb").write_text(notebook, "utf-8")
 
 
 @pytest.mark.e2e
-def test_the_first_hour_prints_and_writes_what_its_commands_do(tmp_path, monkeypatch, capsys):
+@pytest.mark.parametrize(("page", "lang", "built", "returned"), HOURS, ids=["en", "fr"])
+def test_the_first_hour_prints_and_writes_what_its_commands_do(
+    page, lang, built, returned, tmp_path, monkeypatch, capsys
+):
     """Of the answers that it does not show, the right ones came back."""
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setenv("LANG", "en_US.UTF-8")
-    Path("class.csv").write_text(sample("student,lang"), "utf-8")
-    accepted = sample("student,exercise,seed,part,points,reason")
-    (change,) = tables(sample("date,"))
-    shown = [tuple(cell.strip("` ") for cell in row) for row in ROW_OF_MARKS.findall(HOUR.read_text("utf-8"))]
-    typed = tables(sample("student,exercise,seed,part,answer"))
+    monkeypatch.setenv("LANG", lang)
+    Path("classe.csv").write_text(sample(page, "student,lang"), "utf-8")
+    Path("class.csv").write_text(sample(page, "student,lang"), "utf-8")
+    accepted = sample(page, "student,exercise,seed,part,points,reason")
+    (change,) = tables(sample(page, "date,"))
+    shown = [tuple(cell.strip("` ") for cell in row) for row in ROW_OF_MARKS.findall(page.read_text("utf-8"))]
+    typed = tables(sample(page, "student,exercise,seed,part,answer"))
     answers = {(row["student"], row["part"]): row["answer"] for row in [*typed, change]}
-    for block in blocks(HOUR, "console"):
+    for block in blocks(page, "console"):
         command, _, printed = block.removeprefix("$ coursework ").partition("\n")
         if not block.startswith("$ ") or " check " in block or not printed:
             continue
@@ -255,43 +263,76 @@ def test_the_first_hour_prints_and_writes_what_its_commands_do(tmp_path, monkeyp
             if "--accepted" in command:
                 Path("decisions.csv").write_text(accepted, "utf-8")
             else:
-                hand_in(answers | {row[:2]: row[2] for row in shown})
+                cell = dict(re.findall(r'^    "(\w+)": "(.*)",$', sample(page, "# Your answers"), re.M))
+                hand_in(answers | {row[:2]: row[2] for row in shown}, cell, built, returned)
         run(shlex.split(command))
-        assert "".join(capsys.readouterr()) == printed
+        assert NO_BREAK.sub(" ", "".join(capsys.readouterr())) == printed
         if "--accepted" not in command and command.startswith("grade"):
-            marks = {(row["student"], row["part"]): row for row in table(Path("week3/marks/marks.csv"))}
+            marks = {(row["student"], row["part"]): row for row in table(Path(built, "marks/marks.csv"))}
     assert {(row["student"], row["seed"], row["part"]) for row in typed} <= {
-        (row["student"], row["seed"], row["part"]) for row in table(Path("week3/answers.csv"))
+        (row["student"], row["seed"], row["part"]) for row in table(Path(built, "answers.csv"))
     }
     columns = ("student", "part", "answer", "read_as", "verdict", "points", "feedback")
     assert len(shown) == 8
     assert shown == [tuple(marks[row[:2]][name] for name in columns) for row in shown]
-    (changed,) = table(Path("week3/marks/changes.csv"))
+    (changed,) = table(Path(built, "marks/changes.csv"))
     assert changed | {"date": change["date"]} == change
-    listed = {f"week3/{line.strip().split()[0].rstrip(',')}" for line in sample("week3/").splitlines()[1:]}
+    listed = {
+        f"{built}/{line.strip().split()[0].rstrip(',')}"
+        for line in sample(page, f"{built}/").splitlines()[1:]
+    }
     assert all((tmp_path / name).exists() for name in listed)
 
 
-def test_the_statement_and_the_new_course_that_are_shown_are_those_printed(tmp_path, monkeypatch, capsys):
-    monkeypatch.chdir(tmp_path)
-    monkeypatch.setenv("LANG", "en_US.UTF-8")
-    assert run(["show", "slotted_mechanism", "--seed", "3", "--lang", "en"]) == 0
+@each_row(("page", "lang", "built", "returned"), HOURS)
+def test_the_statement_that_is_shown_is_the_one_printed(page, lang, built, returned, monkeypatch, capsys):
+    monkeypatch.setenv("LANG", lang)
+    assert run(["show", "slotted_mechanism", "--seed", "3", "--lang", lang[:2]]) == 0
     printed = capsys.readouterr().out
-    pieces = [piece.strip("\n") for piece in sample("Slotted mechanism").split("...\n")]
+    start = "Slotted mechanism" if lang.startswith("en") else "Mécanisme à coulisse"
+    pieces = [piece.strip("\n") for piece in sample(page, start).split("...\n")]
     places = [printed.find(piece) for piece in pieces]
     assert len(pieces) == 3
     assert -1 not in places
     assert places == sorted(places)
+
+
+def test_the_new_course_that_is_shown_is_the_one_printed(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
     (shown,) = (
         b for b in blocks(DOCS / "writing.md", "console") if b.startswith("$ coursework new mine\nwrote")
     )
-    monkeypatch.delenv("LANG")
+    monkeypatch.delenv("LANG", raising=False)
     assert run(["new", "mine"]) == 0
     assert shown.split("\n", 1)[1] == capsys.readouterr().out
 
 
-def test_the_marking_that_is_shown_is_that_of_a_course_that_states_none():
-    shown = blocks(DOCS / "build_and_mark.md", "toml")
+OPTION_OR_KEY = re.compile(r"--[a-z][\w-]*|(?<=^\| )`[\w./]+`", re.MULTILINE)
+
+
+@each_row("name", ["first_hour", "build_and_mark", "after_the_exam", "assignments"])
+def test_a_french_page_tells_of_every_option_file_and_key_of_the_english_one(name):
+    english, french = (
+        {*OPTION_OR_KEY.findall((DOCS / f"{name}{end}").read_text("utf-8"))} for end in (".md", ".fr.md")
+    )
+    assert sorted((english ^ french) - {"--help"}) == []
+
+
+def test_the_french_page_on_the_site_names_its_links_and_buttons():
+    page = (DOCS / "site.fr.md").read_text("utf-8") + (DOCS / "scans.fr.md").read_text("utf-8")
+    said = {
+        text
+        for of in ("", "site", "scan")
+        for text in re.findall(r'= "(.*)"$', file_of("fr", of).read_text("utf-8"), re.MULTILINE)
+    }
+    named = set(re.findall(r"(?<!\*)\*\[?([^*\]]+)\]?[^*]*\*(?!\*)", page))
+    known = {one.replace("'", "’") for one in said}
+    assert {name for name in named if " ".join(name.split()) not in known} == set()
+
+
+@each_row("page", ["build_and_mark.md", "build_and_mark.fr.md"])
+def test_the_marking_that_is_shown_is_that_of_a_course_that_states_none(page):
+    shown = blocks(DOCS / page, "toml")
     (stated,) = (tomllib.loads(b)["marking"] for b in shown if "[marking]" in b)
     slip = COURSE["slotted_mechanism"].variant(1).grade({"omega4": "1.96"})["omega4"]
     assert slip.verdict == "slip:sign"
@@ -386,9 +427,10 @@ def test_the_picture_of_a_sheet_is_one_page_as_png():
     assert gallery().first_page(renderer_of(COURSE.folder).typst(handout)).startswith(b"\x89PNG")
 
 
-def test_the_assignment_that_is_shown_is_one_of_the_course(tmp_path):
+@each_row("page", ["assignments.md", "assignments.fr.md"])
+def test_the_assignment_that_is_shown_is_one_of_the_course(page, tmp_path):
     """Its secret is none, so that who copies it shares none with all who read the page."""
-    (shown,) = blocks(DOCS / "assignments.md", "toml")
+    (shown,) = blocks(DOCS / page, "toml")
     (tmp_path / "midterm.toml").write_text(shown, "utf-8")
     with pytest.raises(BadInput, match="a secret is 32 hexadecimal digits"):
         read_assignment(tmp_path / "midterm.toml", COURSE)
@@ -396,7 +438,7 @@ def test_the_assignment_that_is_shown_is_one_of_the_course(tmp_path):
     (tmp_path / "midterm.toml").write_text(shown, "utf-8")
     assignment = read_assignment(tmp_path / "midterm.toml", COURSE)
     assert set(assignment.names) == {"slotted_mechanism", "vocabulary", "four_bar_motion", "grashof"}
-    table = (DOCS / "assignments.md").read_text("utf-8")
+    table = (DOCS / page).read_text("utf-8")
     for key in [
         *OPTIONS,
         *(f.name for f in fields(assignment) if f.name not in ("name", "exercises", "options")),
