@@ -81,7 +81,9 @@ def _for_everybody(app, pagename, templatename, context, doctree):
 
 
 #: What stands in French before its marks and within its quotation marks: a space that does not break. Code stays.
-_FRENCH = re.compile(r"(^(`{3,}).*?^\2$|`[^`\n]*`)|(?<=\S) (?=[;:!?»](?:\s|$))|(?<=«) ", re.MULTILINE | re.DOTALL)
+_FRENCH = re.compile(
+    r"(^(`{3,}).*?^\2$|`[^`\n]*`)|(?<=\S) (?=[;:!?»](?:\s|$))|(?<=«) ", re.MULTILINE | re.DOTALL
+)
 
 
 def _french(app, docname, source):

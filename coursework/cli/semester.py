@@ -57,7 +57,7 @@ def semester(assignments: Sequence[str], out: Path, absent: str, decimal: str, a
     else:
         write_whole(out, csv_file(rows, columns, SPREADSHEETS[decimal]))
         say("{students} in {out}", students=counted(len(rows), "student"), out=out)
-    statuses = [row["status"] for row in rows]
+    statuses = [table.unsettled(line, read) for line in lines]
     waiting = sum(table.PROVISIONAL in status for status in statuses)
     absences = sum(table.ABSENT in status for status in statuses)
     if absences:

@@ -164,14 +164,19 @@ def average(line: SemesterLine, assignments: Sequence[Assessed], absence: str) -
     return total / weights if weights else None
 
 
-def status_of(line: SemesterLine, assignments: Sequence[Assessed]) -> str:
-    """Return what keeps a line from being final: ``provisional: final; absent: midterm``; else ``final``."""
+def unsettled(line: SemesterLine, assignments: Sequence[Assessed]) -> dict[str, list[str]]:
+    """Return what keeps a line from being final: provisional, absent and excused, with the names of the assignments."""
     results = {a.name: line.results.get(a.name, Assessment(None, ABSENT)).status for a in assignments}
-    told = [
-        f"{status}: {', '.join(names)}"
+    return {
+        status: names
         for status in (PROVISIONAL, ABSENT, EXCUSED)
         if (names := [name for name, its in results.items() if its == status])
-    ]
+    }
+
+
+def status_of(line: SemesterLine, assignments: Sequence[Assessed]) -> str:
+    """Return a line's status as ``semester.csv`` has it: ``provisional: final; absent: midterm``; else ``final``."""
+    told = [f"{status}: {', '.join(names)}" for status, names in unsettled(line, assignments).items()]
     return "; ".join(told) or FINAL
 
 

@@ -100,3 +100,12 @@ def test_what_cannot_be_averaged_is_refused(year, capsys):
     refused("the mark 10 of Cy Ray is above 8")
     for wrong in (f"{year / 'midterm'}:0", "student=" + str(year / "midterm"), str(year / "nothing")):
         assert run(["semester", wrong]) == 2
+
+
+
+def test_an_assignment_may_be_called_as_a_state_is(year, capsys):
+    named = f"absent, provisional={year / 'midterm'}"
+    assert run(["semester", named, "--out", str(year / "s.csv")]) == 1
+    said = capsys.readouterr().err
+    assert "absence" not in said
+    assert "1 student with a provisional mark" in said

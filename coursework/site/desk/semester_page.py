@@ -12,17 +12,17 @@ from urllib.parse import urlencode
 from sqlalchemy import Connection
 from starlette.responses import Response
 
-from coursework.database.areas import groups_known, students_within
+from coursework.database.areas import group_of, groups_known, students_within
 from coursework.database.instructor_queries import AssignmentOverview, listed_assignments
 from coursework.database.permissions import Permission, group_key
 from coursework.errors import BadInput
 from coursework.gradebook import semester
 from coursework.gradebook.class_points import Scored
 from coursework.gradebook.semester import Assessed, SemesterLine
-from coursework.issuing.exam_columns import group_of
 from coursework.issuing.identity import identifies
 from coursework.issuing.students import folded
 from coursework.language.numbers import localise, typed_number
+from coursework.language.words import words
 from coursework.site.desk.class_cache import CLASS_GROUP, assignment_title
 from coursework.site.desk.class_table import ClassTable, class_tables
 from coursework.site.desk.files import spreadsheet_of
@@ -69,24 +69,23 @@ def semester_page(request: Request) -> Response:
         one.name: one.title if often[one.title] == 1 else f"{one.title} ({one.name})"
         for one in table.assignments
     }
+    for row, line in zip(lines, table.lines, strict=True):
+        row["status"] = _status(request, titles, semester.unsettled(line, table.read))
     return request.render(
         "site/instructor/semester", table=table, page=page, rows=page.rows, titles=titles, worths=semester.WORTH,
         columns=semester.columns_of(table.lines, table.read), class_groups=table.groups, class_group=table.group,
-        status=lambda text: _status(request, titles, text), mean=localise(f"{sum(found) / len(found):.2f}", request.lang) if found else "", of=semester.OF, query=_query(request),
+        mean=localise(f"{sum(found) / len(found):.2f}", request.lang) if found else "", of=semester.OF, query=_query(request),
         number=lambda cell: localise(f"{cell:.10g}", request.lang) if isinstance(cell, (int, float)) else cell,
     )  # fmt: skip
 
 
-def _status(request: Request, titles: Mapping[str, str], text: str) -> str:
-    """Return a status in the words of the page: ``absent: Midterm``."""
-    words, colon = request.words["semester"]["results"], request.words["semester"]["colon"]
-    parts = [part.partition(": ") for part in text.split("; ")]
-    return "; ".join(
-        f"{words[status]}{colon} {', '.join(titles.get(name, name) for name in names.split(', '))}"
-        if names
-        else words[status]
-        for status, _, names in parts
+def _status(request: Request, titles: Mapping[str, str], unsettled: Mapping[str, Sequence[str]]) -> str:
+    """Return what keeps a line from being final in the words of the page: ``absent: Midterm``."""
+    told, colon = request.words["semester"]["results"], words(request.lang)["sheet"]["colon"]
+    parts = (
+        f"{told[s]}{colon} {', '.join(map(titles.__getitem__, names))}" for s, names in unsettled.items()
     )
+    return "; ".join(parts) or str(told[semester.FINAL])
 
 
 def semester_file(request: Request) -> Response:
