@@ -269,33 +269,6 @@ def people_of(connection: Connection, assignment_id: int) -> dict[str, int]:
     return {row.student: row.person_id for row in connection.execute(query)}
 
 
-class StudentSubmission(NamedTuple):
-    """Submission on the site, or file with answers, of a student."""
-
-    source: str
-    number: int  #: attempt on the site; 0 for a file
-    receipt: str
-    late: int  #: seconds
-    received_at: datetime
-
-
-def submissions_of_student(
-    connection: Connection, assignment_id: int, student: str
-) -> list[StudentSubmission]:
-    """Return the submissions of a student, in order: those on the site, and files that name the student as
-    issued."""
-    named = select(answer.c.delivery_id).where(answer.c.student == student)
-    query = (
-        select(delivery)
-        .where(delivery.c.assignment_id == assignment_id, delivery.c.id.in_(named))
-        .order_by(delivery.c.id)
-    )
-    return [
-        StudentSubmission(row.source, row.number, row.receipt, row.late, row.came)
-        for row in connection.execute(query)
-    ]
-
-
 def practised(
     connection: Connection, person: int, exercises: Collection[str]
 ) -> dict[str, tuple[int, datetime | None]]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import base64
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from datetime import datetime
 from typing import Any, NamedTuple
 
@@ -11,6 +11,7 @@ from sqlalchemy import Connection, insert, select, update
 
 from coursework.database.store import insert_unless_there
 from coursework.database.tables import scanned, typed
+from coursework.scanning.typed import Typed
 
 
 class ScannedPage(NamedTuple):
@@ -22,20 +23,6 @@ class ScannedPage(NamedTuple):
     student: str
     kept: Mapping[str, Any]  #: what was read
     came: datetime
-
-
-class TypedRow(NamedTuple):
-    """Text typed by a person for one place on a scan; an answer of None withdraws the text before."""
-
-    student: str
-    exercise: str
-    seed: str
-    part: str
-    coordinate: str
-    answer: str | None
-    seen: str
-    by: str
-    made: datetime
 
 
 def put_scanned(connection: Connection, assignment_id: int, page: ScannedPage, picture: bytes) -> bool:
@@ -68,20 +55,19 @@ def name_scanned(connection: Connection, assignment_id: int, page: str, student:
     connection.execute(update(scanned).where(*of_page).values(student=student))
 
 
-def put_typed(connection: Connection, assignment_id: int, rows: Iterable[TypedRow]) -> None:
-    """Store texts typed by a person."""
-    values = [{**row._asdict(), "assignment_id": assignment_id} for row in rows]
-    if values:
-        connection.execute(insert(typed), values)
+def put_typed(connection: Connection, assignment_id: int, text: Typed, by: str, made: datetime) -> None:
+    """Store a text typed by a person."""
+    row = {**text._asdict(), "by": by, "made": made, "assignment_id": assignment_id}
+    connection.execute(insert(typed).values(row))
 
 
-def typed_rows(connection: Connection, assignment_id: int) -> list[TypedRow]:
+def typed_texts(connection: Connection, assignment_id: int) -> list[Typed]:
     """Return the current texts: the last of each place, in the order in which they were typed, without those
     withdrawn."""
-    columns = [typed.c[name] for name in TypedRow._fields]
+    columns = [typed.c[name] for name in Typed._fields]
     in_order = select(*columns).where(typed.c.assignment_id == assignment_id).order_by(typed.c.id)
-    last: dict[tuple[str, ...], TypedRow] = {}
-    for row in map(TypedRow._make, connection.execute(in_order)):
+    last: dict[tuple[str, ...], Typed] = {}
+    for row in map(Typed._make, connection.execute(in_order)):
         key = tuple(row[:5])
         last.pop(key, None)
         last[key] = row

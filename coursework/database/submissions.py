@@ -172,6 +172,15 @@ def submission_alike(connection: Connection, assignment_id: int, digest: str) ->
     return _submission(row, is_new=False)
 
 
+def submissions_of_student(connection: Connection, assignment_id: int, student: str) -> list[Submission]:
+    """Return the submissions of a student, in order: those on the site, and files that name the student as
+    issued."""
+    named = select(answer.c.delivery_id).where(answer.c.student == student)
+    of_student = delivery.c.assignment_id == assignment_id, delivery.c.id.in_(named)
+    rows = connection.execute(select(delivery).where(*of_student).order_by(delivery.c.id))
+    return [_submission(row, is_new=False) for row in rows]
+
+
 def _submission(row: Any, *, is_new: bool) -> Submission:
     return Submission(row.id, is_new, row.source, row.number, row.receipt, row.late, row.came)
 

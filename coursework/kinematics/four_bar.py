@@ -421,42 +421,6 @@ class FourBarPose:
         return value
 
 
-def grashof_type(ground: Any, crank: Any, coupler: Any, rocker: Any) -> str:
-    """Return the class of a four-bar by the links that turn: ``impossible``, ``change-point``,
-    ``crank-rocker``, ``rocker-crank``, ``double-crank``, ``double-rocker`` or ``triple-rocker``.
-
-    Scalars only; the decision is exact on the given lengths.
-
-    Parameters
-    ----------
-    ground, crank, coupler, rocker
-        Lengths, positive, in one common unit; scalars.
-
-    Returns
-    -------
-    The word.
-
-    Raises
-    ------
-    WrongValue
-        A length is not positive and finite.
-
-    Source
-    ------
-    Grashof's rule: the shortest and the longest length together against the two others.
-    """
-    d, a, b, c = _lengths(ground, crank, coupler, rocker)
-    s, p, q, l = sorted((d, a, b, c))
-    if math.fsum((s, p, q, -l)) <= 0:
-        return "impossible"
-    margin = math.fsum((p, q, -s, -l))
-    if margin == 0:
-        return "change-point"
-    if margin < 0:
-        return "triple-rocker"
-    return {a: "crank-rocker", c: "rocker-crank", d: "double-crank", b: "double-rocker"}[s]
-
-
 def _lengths(*given: Any) -> list[Any]:
     if all(np.ndim(length) == 0 for length in given):
         for name, length in zip(("ground", "crank", "coupler", "rocker"), given, strict=True):

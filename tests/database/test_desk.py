@@ -20,12 +20,11 @@ from coursework.database.instructor_queries import (
     site_submissions_of,
     stamp,
     students_since,
-    submissions_of_student,
     undoable,
 )
 from coursework.database.marking import mark_new
 from coursework.database.progress import PersonProgress
-from coursework.database.submissions import insert_submission
+from coursework.database.submissions import insert_submission, submissions_of_student
 from coursework.gradebook.decisions import Decision
 from coursework.gradebook.rows import AnswerRow, RowOrigin
 

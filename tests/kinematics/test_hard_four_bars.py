@@ -10,7 +10,7 @@ from tables import each_row
 
 from coursework.errors import CannotAssemble, Undefined, WrongValue
 from coursework.kinematics.angles import heading_after_turns, heading_in_degrees
-from coursework.kinematics.four_bar import FourBar, grashof_type
+from coursework.kinematics.four_bar import FourBar
 from coursework.kinematics.margins import exact_sum
 
 EPS = 2.0**-52
@@ -318,24 +318,3 @@ def test_lengths_that_are_none_are_refused():
         FourBar(100, 40, 80, 70).angles(math.inf)
     found = FourBar(np.array([100, 100.0]), 40, np.array([80, -80.0]), 70).angles(1.0)
     assert np.array_equal(np.isnan(found), [[False, True]] * 2)
-
-
-@each_row(
-    ("lengths", "kind"),
-    [
-        ((100, 40, 80, 70), "crank-rocker"),
-        ((100, 70, 80, 40), "rocker-crank"),
-        ((40, 100, 80, 70), "double-crank"),
-        ((90, 70, 40, 50), "triple-rocker"),
-        ((80, 70, 40, 100), "double-rocker"),
-        (CHANGE_POINT, "change-point"),
-        ((0.1, 0.2, 0.3, 0.2), "crank-rocker"),
-        ((100, 10, 20, 30), "impossible"),
-        ((60, 10, 20, 30), "impossible"),
-    ],
-)
-def test_the_grashof_type_is_decided_exactly(lengths, kind):
-    if lengths == (0.1, 0.2, 0.3, 0.2):
-        # s + l = p + q on paper; of the numbers in the machine the exact sum decides.
-        kind = "double-crank" if math.fsum((0.2, 0.2, -0.1, -0.3)) > 0 else "change-point"
-    assert grashof_type(*lengths) == kind

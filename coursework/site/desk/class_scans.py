@@ -11,7 +11,7 @@ from typing import Any
 
 from coursework.database.assignments import issued_content
 from coursework.database.marking import mark_new
-from coursework.database.scans import pages_scanned, typed_rows
+from coursework.database.scans import pages_scanned, typed_texts
 from coursework.database.submissions import insert_submission
 from coursework.gradebook.rows import AnswerRow
 from coursework.messages import Message, localised
@@ -93,11 +93,10 @@ def class_scans(site: Site, number: int) -> ClassScans:
     with site.store.reading() as connection:
         content = issued_content(connection, number)
         rows = pages_scanned(connection, number)
-        rows_typed = typed_rows(connection, number)
+        typed = tuple(typed_texts(connection, number))
     papers = site.cache.get(
         ("papers that are scanned", number, _stamp(content)), lambda: Papers(site.course, content)
     )
-    typed = tuple(Typed(*map(str, row[:7])) for row in rows_typed)
     pages = with_copies(
         as_told(
             Scanned(ScannedFile(row.file, row.page.partition("-")[0], 0), row.number, row.page, page_of(row.kept) or _GONE),

@@ -12,14 +12,14 @@ from starlette.responses import Response
 
 from coursework.database.class_state import ClassState
 from coursework.database.permissions import Permission
-from coursework.database.scans import TypedRow, name_scanned, picture_scanned, put_typed
+from coursework.database.scans import name_scanned, picture_scanned, put_typed
 from coursework.errors import BadInput
 from coursework.language.words import words
 from coursework.scanning.gathering import AnswerCard
 from coursework.scanning.page_reading import cut
 from coursework.scanning.queue import place_of_card
 from coursework.scanning.sources import ENDINGS
-from coursework.scanning.typed import NAME, PAGE
+from coursework.scanning.typed import NAME, PAGE, Typed
 from coursework.site.desk import scan_jobs
 from coursework.site.desk.class_cache import class_here, class_now, class_page_of
 from coursework.site.desk.class_scans import ClassScans, class_scans, hand_over
@@ -123,22 +123,12 @@ def _answer(request: Request, card: AnswerCard) -> str:
 def _typed(request: Request, now: ClassState, scans: ClassScans, card: AnswerCard, answer: str) -> str:
     """Store the typed answer; return the message."""
     student, exercise, seed, part, coordinate = place_of_card(card)
-    row = TypedRow(
-        student,
-        exercise,
-        seed,
-        part,
-        coordinate,
-        answer,
-        " ".join(card.pages),
-        request.actor.name,
-        request.received_at,
-    )
+    text = Typed(student, exercise, seed, part, coordinate, answer, " ".join(card.pages))
     code, _, number = answer.partition(" ")
     if exercise == PAGE and answer and not (code in scans.papers.papers and number in _numbers(scans, code)):
         raise BadInput(request.words["scans"]["no_page"])
     with request.site.store.begin() as connection:
-        put_typed(connection, now.about.id, [row])
+        put_typed(connection, now.about.id, text, request.actor.name, request.received_at)
         if exercise == PAGE and answer:
             name_scanned(connection, now.about.id, part, scans.papers.papers[code].student)
         about = {"assignment": now.about.id, "exercise": exercise, "part": part if exercise != PAGE else ""}

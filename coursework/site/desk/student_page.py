@@ -21,9 +21,9 @@ from coursework.database.decisions import (
     decide,
     history,
 )
-from coursework.database.instructor_queries import people_of, practised, submissions_of_student
+from coursework.database.instructor_queries import people_of, practised
 from coursework.database.permissions import Permission
-from coursework.database.submissions import drawings_of
+from coursework.database.submissions import drawings_of, submissions_of_student
 from coursework.errors import BadInput
 from coursework.figures import Figure
 from coursework.gradebook.columns import own_columns
