@@ -366,6 +366,4 @@ def _printed(renderer: Renderer, content: _FeedbackContent, end: str) -> bytes:
     sheet = content.sheet
     if end == "ipynb":
         return renderer.feedback_notebook(sheet).encode("utf-8")
-    if isinstance(sheet, FeedbackPaper):
-        return renderer.paper_pdf(sheet) if end == "pdf" else renderer.paper_html(sheet).encode("utf-8")
     return renderer.pdf(sheet) if end == "pdf" else renderer.html(sheet).encode("utf-8")

@@ -122,27 +122,26 @@ def _paper(
         Path(folder) / issued_paper.folder / f"{issued_paper.first.stem}.{lang}"
         for folder in ("handouts", "instructor")
     )
-    pdf, html, notebook = issued_paper.renders(renderer)
     paper, solution = partial(issued_paper.paper, lang), partial(issued_paper.solution, lang)
     if "pdf" in formats:
-        yield rendered(for_student, ".pdf", pdf, partial(issued_paper.printed, lang))
+        yield rendered(for_student, ".pdf", renderer.pdf, partial(issued_paper.printed, lang))
     if "html" in formats:
-        yield rendered(for_student, ".html", html, paper)
+        yield rendered(for_student, ".html", renderer.html, paper)
     if "ipynb" in formats and "practice" in formats:
         for issue in issued_paper.issues:
             variant = issue.variant.in_language(lang)
             path = Path("handouts") / variant.exercise.name / for_student.name
             yield rendered(path, ".ipynb", renderer.study, partial(variant.study_sheet, issue.shown))
     elif "ipynb" in formats:
-        yield rendered(for_student, ".ipynb", notebook, paper)
+        yield rendered(for_student, ".ipynb", renderer.notebook, paper)
     if "tex" in formats:
         yield from _tex(renderer, issued_paper, lang, for_student, solved=False)
     if "no-solutions" in formats:
         return
     if "pdf" in formats:
-        yield rendered(for_staff, ".solution.pdf", pdf, solution)
+        yield rendered(for_staff, ".solution.pdf", renderer.pdf, solution)
     if "html" in formats:
-        yield rendered(for_staff, ".solution.html", html, solution)
+        yield rendered(for_staff, ".solution.html", renderer.html, solution)
     if "tex" in formats:
         yield from _tex(renderer, issued_paper, lang, for_staff, solved=True)
 
@@ -157,7 +156,7 @@ def _tex(
     yield rendered(
         path,
         ".solution.tex" if solved else ".tex",
-        issued_paper.tex(renderer, figures, polygons),
+        partial(renderer.tex, figures=figures, polygons=polygons),
         partial(issued_paper.solution if solved else issued_paper.paper, lang),
     )
     for issue, figure, drawn in zip(issued_paper.issues, figures, polygons, strict=True):
@@ -190,17 +189,15 @@ def _booklets(
 
 
 def _booklet(renderer: Renderer, name: str, issued_papers: Sequence[IssuedPaper], lang: str) -> Booklet:
-    bind = issued_papers[0].binds(renderer)
     return Booklet(
         name,
-        lambda: bind([issued_paper.printed(lang) for issued_paper in issued_papers]),
+        lambda: renderer.booklet([issued_paper.printed(lang) for issued_paper in issued_papers]),
         [{**issued_paper.cells, "lang": lang} for issued_paper in issued_papers],
     )
 
 
 def _solved(renderer: Renderer, issued_papers: Sequence[IssuedPaper], lang: str) -> bytes:
-    bind = issued_papers[0].binds(renderer)
-    return bind([issued_paper.solution(lang) for issued_paper in issued_papers])[0]
+    return renderer.booklet([issued_paper.solution(lang) for issued_paper in issued_papers])[0]
 
 
 def tex_stem(path: Path) -> str:

@@ -6,12 +6,10 @@ import datetime
 import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from functools import partial
 from typing import Any
 
 from coursework.issuing.answer_papers import printed_handouts
 from coursework.issuing.assignment import Assignment, text_in
-from coursework.issuing.booklets import Pages
 from coursework.issuing.exam_columns import (
     duration_text,
     extra_time_of,
@@ -25,7 +23,6 @@ from coursework.issuing.issuing import Issue
 from coursework.issuing.students import folded
 from coursework.language.numbers import localise, plain
 from coursework.language.words import words
-from coursework.rendering.renderer import Renderer
 from coursework.sheets.paper import Paper, PaperHeading, SolutionPaper
 
 Rendering = Callable[[Any], str | bytes | None]
@@ -141,18 +138,6 @@ class IssuedPaper:
         """Ends of the names of its exercises' drawings, for LaTeX."""
         return tuple(f"-{number}" for number in range(1, len(self.issues) + 1))
 
-    def renders(self, renderer: Renderer) -> tuple[Rendering, Rendering, Rendering]:
-        """Return the functions that make PDF, page and notebook of it."""
-        return renderer.paper_pdf, renderer.paper_html, renderer.paper_notebook
-
-    def tex(self, renderer: Renderer, figures: Sequence[str], polygons: Sequence[str]) -> Rendering:
-        """Return the function that makes its LaTeX source."""
-        return partial(renderer.paper_tex, figures=figures, polygons=polygons)
-
-    def binds(self, renderer: Renderer) -> Callable[[list[Any]], tuple[bytes, Pages]]:
-        """Return the function that makes one PDF of several papers."""
-        return renderer.papers_pdf
-
 
 class IssuedSheet(IssuedPaper):
     """Paper of one exercise that is handed out alone, without a heading of its own."""
@@ -182,15 +167,6 @@ class IssuedSheet(IssuedPaper):
     def solution(self, lang: str) -> Any:
         variant = self.first.variant.in_language(lang)
         return variant.answer_sheet(self.first.student, polygons=self.polygons)
-
-    def renders(self, renderer: Renderer) -> tuple[Rendering, Rendering, Rendering]:
-        return renderer.pdf, renderer.html, renderer.notebook
-
-    def tex(self, renderer: Renderer, figures: Sequence[str], polygons: Sequence[str]) -> Rendering:
-        return partial(renderer.tex, figure=figures[0], polygons=polygons[0])
-
-    def binds(self, renderer: Renderer) -> Callable[[list[Any]], tuple[bytes, Pages]]:
-        return renderer.booklet
 
 
 def papers(

@@ -30,14 +30,14 @@ BABEL = {"fr": "french", "en": "english"}
 
 
 def source(
-    folders: Sequence[Path], sheet: views.Sheet, paper: str, figure_file: str, polygons_file: str
+    folders: Sequence[Path], sheet: views.Sheet, paper: str, figures: Sequence[str], polygons: Sequence[str]
 ) -> str:
     """Return the LaTeX source of one sheet; beside it are the PDF of its figure and that of its polygons."""
     lang = views.handout_of(sheet).lang
     names = {
         "paper": paper,
-        "figure_file": figure_file,
-        "polygons_file": polygons_file,
+        "figure_file": figures[0],
+        "polygons_file": polygons[0],
         "babel": BABEL.get(lang, lang),
     }
     env = environment_of(tuple(folders), lang)

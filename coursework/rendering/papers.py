@@ -235,13 +235,12 @@ def tex(
     paper: Paper | SolutionPaper,
     size: str,
     figures: Sequence[str],
-    polygons: Sequence[str] = (),
+    polygons: Sequence[str],
 ) -> str:
     """Return the LaTeX source of a paper; beside it are the PDF of each exercise's figure and that of its polygons."""
     env, lang = latex.environment_of(tuple(folders), paper.heading.lang), paper.heading.lang
-    drawn = polygons or ["polygons.pdf"] * len(figures)
     files = [
-        {"figure_file": drawing, "polygons_file": two} for drawing, two in zip(figures, drawn, strict=True)
+        {"figure_file": drawing, "polygons_file": two} for drawing, two in zip(figures, polygons, strict=True)
     ]
     names = context(paper, "tex.j2", partial(render, env), files) | {
         "paper": size,

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from functools import cache
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 from coursework.course.builtin import builtin_root
 from coursework.course.folder import Folder
@@ -21,13 +21,15 @@ if TYPE_CHECKING:
     from coursework.sheets.report import ReportContent
     from coursework.sheets.sheet import AnswerSheet, FeedbackSheet, Handout, StudySheet
 
+    AnySheet: TypeAlias = Handout | AnswerSheet | FeedbackSheet
+    Pages: TypeAlias = tuple[tuple[int, int], ...]  # the first and the last page of each, from 1 on
 
 PAPERS = ("a4", "letter")
 _SCREEN = 96  #: pixels an inch of a page on a screen
 
 
 class Renderer:
-    """Renders sheets through the templates of these folders, the first that has one.
+    """Renders sheets, and papers of several sheets, through the templates of these folders, the first that has one.
 
     The same sheet gives the same bytes. Safe to share between threads; not to be carried into a
     forked process. ``paper`` is ``a4`` or ``letter``; another raises :class:`UnknownName`.
@@ -43,31 +45,35 @@ class Renderer:
         """Return the same renderer for another paper."""
         return Renderer(self.template_folders, paper)
 
-    def typst(self, sheet: Handout | AnswerSheet | FeedbackSheet) -> str:
-        """Return the Typst source of a sheet; it stands alone."""
+    def typst(self, sheet: AnySheet | AnyPaper) -> str:
+        """Return the Typst source of a sheet or a paper; it stands alone."""
         from coursework.rendering import pdf
 
-        return pdf.drawn(pdf.source(self.template_folders, [sheet], self.paper), self.template_folders)
+        return pdf.drawn(self._source([sheet]), self.template_folders)
 
-    def pdf(self, sheet: Handout | AnswerSheet | FeedbackSheet) -> bytes:
-        """Return a sheet as a tagged PDF."""
-        return self.booklet_pdf([sheet])
+    def _source(self, sheets: Sequence[AnySheet | AnyPaper]) -> str:
+        from coursework.rendering import papers, pdf
 
-    def booklet_pdf(self, sheets: Sequence[Handout | AnswerSheet | FeedbackSheet]) -> bytes:
-        """Several sheets in one PDF, each with its own page numbers; those to print from an odd page on."""
+        source: Callable[..., str] = papers.typst_source if _is_paper(sheets[0]) else pdf.source
+        return source(self.template_folders, sheets, self.paper)
+
+    def pdf(self, *sheets: AnySheet | AnyPaper) -> bytes:
+        """Return sheets, or papers, as one tagged PDF."""
         from coursework.rendering import pdf
 
-        return pdf.compile_pdf(pdf.source(self.template_folders, sheets, self.paper), self.template_folders)
+        return pdf.compile_pdf(self._source(sheets), self.template_folders)
 
-    def booklet(
-        self, sheets: Sequence[Handout | AnswerSheet | FeedbackSheet]
-    ) -> tuple[bytes, tuple[tuple[int, int], ...]]:
-        """Return the PDF of :meth:`booklet_pdf`, and the first and last page of each sheet in it, from 1 on."""
+    def booklet(self, sheets: Sequence[AnySheet | AnyPaper]) -> tuple[bytes, Pages]:
+        """Return the PDF of many sheets or papers, and the pages of each in it."""
         from coursework.rendering import pdf
 
-        return pdf.compile_booklet(
-            pdf.source(self.template_folders, sheets, self.paper), self.template_folders
-        )
+        return pdf.compile_booklet(self._source(sheets), self.template_folders)
+
+    def images(self, sheet: AnySheet | AnyPaper, ppi: float = _SCREEN) -> list[bytes]:
+        """Return each page of a sheet or a paper as a PNG."""
+        from coursework.rendering import pdf
+
+        return pdf.compile_pictures(self._source([sheet]), self.template_folders, ppi)
 
     def undrawn(self, text: str) -> list[str]:
         """Return the characters of a text that no font of a PDF draws: they are printed as squares."""
@@ -75,22 +81,31 @@ class Renderer:
 
         return pdf.undrawn(text, self.template_folders)
 
-    def html(self, sheet: Handout | AnswerSheet | FeedbackSheet) -> str:
-        """Return a sheet as one web page that fetches nothing. A handout's runs one script, which keeps the answers typed in it
-        and hands them in as a file; any other runs none."""
-        from coursework.rendering import html
+    def html(self, sheet: AnySheet | AnyPaper) -> str:
+        """Return a sheet or a paper as one web page that fetches nothing. A student's own runs one script, which keeps the answers
+        typed in it and hands them in as a file; any other runs none."""
+        from coursework.rendering import html, papers
 
-        return html.page(self.template_folders, sheet, self.paper)
+        page: Callable[..., str] = papers.page if _is_paper(sheet) else html.page
+        return page(self.template_folders, sheet, self.paper)
 
-    def tex(self, sheet: Handout | AnswerSheet, figure: str, polygons: str = "polygons.pdf") -> str:
-        """Return a sheet as LaTeX source for pdflatex.
+    def tex(
+        self,
+        sheet: Handout | AnswerSheet | Paper | SolutionPaper,
+        figures: Sequence[str],
+        polygons: Sequence[str] = (),
+    ) -> str:
+        """Return a sheet or a paper as LaTeX source for pdflatex.
 
-        ``figure`` names the PDF file beside it that holds the figure of :meth:`figure_pdf`, if any, and
-        ``polygons`` that of :meth:`polygons_pdf`.
+        ``figures`` name the PDF files beside it that hold each exercise's figure, that of :meth:`figure_pdf`, if any, and
+        ``polygons`` those of :meth:`polygons_pdf`.
         """
-        from coursework.rendering import latex
+        from coursework.rendering import latex, papers
 
-        return latex.source(self.template_folders, sheet, self.paper, figure, polygons)
+        source: Callable[..., str] = papers.tex if _is_paper(sheet) else latex.source
+        return source(
+            self.template_folders, sheet, self.paper, figures, polygons or ["polygons.pdf"] * len(figures)
+        )
 
     def figure_pdf(self, sheet: Handout | AnswerSheet) -> bytes | None:
         """Return the figure that a sheet shows, as a PDF of its own, several on a page each; nothing when it shows none."""
@@ -116,42 +131,11 @@ class Renderer:
 
         return pages([(figure.svg(), figure.size_mm[0]) for figure in drawings])
 
-    def paper_pdf(self, paper: AnyPaper) -> bytes:
-        """Return a paper, its solutions or its feedback as a tagged PDF."""
-        from coursework.rendering import papers, pdf
-
-        return pdf.compile_pdf(
-            papers.typst_source(self.template_folders, [paper], self.paper), self.template_folders
-        )
-
-    def paper_images(self, paper: AnyPaper) -> list[bytes]:
-        """Return each page of a paper as a PNG."""
-        from coursework.rendering import papers, pdf
-
-        source = papers.typst_source(self.template_folders, [paper], self.paper)
-        return pdf.compile_pictures(source, self.template_folders, _SCREEN)
-
-    def papers_pdf(self, handed: Sequence[AnyPaper]) -> tuple[bytes, tuple[tuple[int, int], ...]]:
-        """Several papers in one PDF, each with its own page numbers and from an odd page on, and the first and last page
-        of each in it, from 1 on."""
-        from coursework.rendering import papers, pdf
-
-        return pdf.compile_booklet(
-            papers.typst_source(self.template_folders, handed, self.paper), self.template_folders
-        )
-
     def white_shares(self, sheet: Handout | Paper) -> list[float]:
         """Return for each page of a sheet or a paper, as printed, the largest share of its height that is white."""
-        from coursework.rendering import papers, pdf
         from coursework.rendering.white_space import PPI, white_share
-        from coursework.sheets.paper import Paper
 
-        source = (
-            papers.typst_source(self.template_folders, [sheet], self.paper)
-            if isinstance(sheet, Paper)
-            else pdf.source(self.template_folders, [sheet], self.paper)
-        )
-        return [white_share(png) for png in pdf.compile_pictures(source, self.template_folders, PPI)]
+        return [white_share(png) for png in self.images(sheet, PPI)]
 
     def attendance_pdf(self, lists: ExamLists, *, public: bool = False) -> bytes:
         """Return the attendance lists of an exam as a tagged PDF, each room from an odd page on; if ``public``, the list of
@@ -174,31 +158,6 @@ class Renderer:
 
         return books.pages(self.template_folders, book, self.paper, solutions=solutions)
 
-    def paper_html(self, paper: AnyPaper) -> str:
-        """Return a paper, its solutions or its feedback as one web page that fetches nothing; the student's own runs the one
-        script that keeps answers."""
-        from coursework.rendering import papers
-
-        return papers.page(self.template_folders, paper, self.paper)
-
-    def paper_tex(
-        self, paper: Paper | SolutionPaper, figures: Sequence[str], polygons: Sequence[str] = ()
-    ) -> str:
-        """Return a paper or its solutions as LaTeX source for pdflatex.
-
-        ``figures`` names the PDF file of each exercise's figure, ``polygons`` that of its polygons.
-        """
-        from coursework.rendering import papers
-
-        return papers.tex(self.template_folders, paper, self.paper, figures, polygons)
-
-    def paper_notebook(self, paper: Paper, *, collected: bool = False) -> str:
-        """Return a paper as a notebook to hand in (JSON, nbformat 4.5): an answers cell an exercise, and nothing that checks;
-        ``collected`` by a platform that knows whose it is."""
-        from coursework.rendering import notebook
-
-        return notebook.paper(self.template_folders, paper, collected=collected)
-
     def feedback_notebook(self, sheet: FeedbackSheet | FeedbackPaper) -> str:
         """Feedback as a notebook to read (JSON, nbformat 4.5), with cells to try another variant where one is offered."""
         from coursework.rendering import notebook
@@ -211,12 +170,13 @@ class Renderer:
 
         return html.construction(self.template_folders, construction)
 
-    def notebook(self, handout: Handout, *, collected: bool = False) -> str:
-        """Return a handout as a notebook to hand in (JSON, nbformat 4.5): nothing in it checks an answer; ``collected`` by a
-        platform that knows whose it is."""
+    def notebook(self, sheet: Handout | Paper, *, collected: bool = False) -> str:
+        """Return a handout or a paper as a notebook to hand in (JSON, nbformat 4.5): an answers cell an exercise, and nothing that
+        checks an answer; ``collected`` by a platform that knows whose it is."""
         from coursework.rendering import notebook
 
-        return notebook.notebook(self.template_folders, handout, collected=collected)
+        made: Callable[..., str] = notebook.paper if _is_paper(sheet) else notebook.notebook
+        return made(self.template_folders, sheet, collected=collected)
 
     def study(self, sheet: StudySheet) -> str:
         """Return a self-study notebook (JSON, nbformat 4.5)."""
@@ -258,6 +218,12 @@ class Renderer:
         from coursework.rendering import terminal
 
         return terminal.statement(handout)
+
+
+def _is_paper(sheet: Any) -> bool:
+    from coursework.sheets.paper import FeedbackPaper, Paper, SolutionPaper
+
+    return isinstance(sheet, (Paper, SolutionPaper, FeedbackPaper))
 
 
 def renderer_of(folder: Folder) -> Renderer:

@@ -190,7 +190,7 @@ def test_a_handout_holds_no_answer(name, lang, seeds):
             "page": re.sub(PLACES_ON_PAGE, "", renderer.html(handout), flags=re.DOTALL),
             "notebook": re.sub(r'"image/png": "[^"]*"', "", renderer.notebook(handout)),
             "sheet": re.sub(PLACES_ON_PAPER, "", renderer.typst(handout), flags=re.DOTALL),
-            "source": renderer.tex(handout, "f.pdf").partition(r"\begin{document}")[2].replace("{,}", ","),
+            "source": renderer.tex(handout, ["f.pdf"]).partition(r"\begin{document}")[2].replace("{,}", ","),
             "terminal": renderer.terminal(handout),
         }
         for part in key.variant.parts:

@@ -59,8 +59,8 @@ def printed(record):
         "page": renderer.html(handout),
         "page of the solution": renderer.html(solution),
         "notebook": renderer.notebook(handout),
-        "source": renderer.tex(handout, figure="a.pdf", polygons="b.pdf"),
-        "source of the solution": renderer.tex(solution, figure="a.pdf", polygons="b.pdf"),
+        "source": renderer.tex(handout, ["a.pdf"], ["b.pdf"]),
+        "source of the solution": renderer.tex(solution, ["a.pdf"], ["b.pdf"]),
     }
 
 

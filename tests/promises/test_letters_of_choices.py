@@ -69,7 +69,7 @@ def test_letters_stand_with_their_words_in_every_format(name, lang):
     handout = variant.handout()
     terminal, notebook = RENDERER.terminal(handout), RENDERER.notebook(handout)
     markdown, code = "\n".join(cells(notebook, "markdown")), "\n".join(cells(notebook, "code"))
-    latex, page = RENDERER.tex(handout, "figure.pdf"), RENDERER.html(handout)
+    latex, page = RENDERER.tex(handout, ["figure.pdf"]), RENDERER.html(handout)
     for part, question in zip(variant.parts, handout.questions, strict=True):
         if not part.choices:
             continue

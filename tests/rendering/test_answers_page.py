@@ -118,7 +118,7 @@ def test_what_is_typed_comes_back_when_the_page_opens_again_and_is_read_as_typed
 
 @needs_node
 def test_a_paper_is_one_file_whose_exercises_are_told_apart(tmp_path):
-    page = Page(RENDERER.paper_html(paper(bare("en", ""), (*NAMES, "grashof"))))
+    page = Page(RENDERER.html(paper(bare("en", ""), (*NAMES, "grashof"))))
     assert page.run("save")["focused"] == "student"
     assert page.run("save")["told"] == [words("en")["page"]["name_first"]]
     done = page.run(
@@ -135,7 +135,7 @@ def test_a_paper_is_one_file_whose_exercises_are_told_apart(tmp_path):
 @needs_node
 def test_two_students_two_variants_and_two_papers_are_kept_apart():
     pages = [one("grashof"), one("grashof", seed=8), one("grashof", student="Ann"), one("slotted_mechanism")]
-    pages.append(Page(RENDERER.paper_html(paper(heading("en")))))
+    pages.append(Page(RENDERER.html(paper(heading("en")))))
     stored = {}
     for number, page in enumerate(pages):
         done = page.run((page.boxes[-1]["name"], page.boxes[-1]["value"] or str(number)), stored=stored)

@@ -57,7 +57,7 @@ def test_a_booklet_says_the_pages_of_each_sheet():
     long = replace(handout("en"), questions=handout("en").questions * 3)
     sheets = [handout("fr"), long, handout("en"), answer_sheet("fr")]
     made, pages = Renderer(TEMPLATES).booklet(sheets)
-    assert made == Renderer(TEMPLATES).booklet_pdf(sheets)
+    assert made == Renderer(TEMPLATES).pdf(*sheets)
     lengths = [len(pages_of([sheet])) for sheet in sheets]
     assert lengths[1] > 1, "a sheet of several pages is among them"
     assert [last - first + 1 for first, last in pages] == lengths

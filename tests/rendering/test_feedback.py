@@ -81,7 +81,7 @@ def test_a_question_and_all_that_is_said_of_it_stand_on_one_page(lang, seeds):
         whole = FeedbackPaper(heading(lang), (sheet, synthetic(lang, 8, seed + 100)), 1.0, 2.0, "12")
         for pages, sheets in (
             (page_texts(RENDERER.pdf(sheet)), [sheet]),
-            (page_texts(RENDERER.paper_pdf(whole)), whole.sheets),
+            (page_texts(RENDERER.pdf(whole)), whole.sheets),
         ):
             assert len(pages) > 2
             for one in sheets:
@@ -315,10 +315,10 @@ def test_what_to_try_next_is_told_in_every_format(lang):
     sheet = replace(feedback_sheet(lang), practice=NEXT)
     whole = FeedbackPaper(bare(lang), (sheet,), 3, 7)
     command = "coursework notebook slotted_mechanism --seed 57"
-    for text in RENDERER.html(sheet), RENDERER.paper_html(whole):
+    for text in RENDERER.html(sheet), RENDERER.html(whole):
         assert f"{command} --lang {lang}" in text
         assert "8.\N{NO-BREAK SPACE}Coriolis" in text
-    for pages in RENDERER.pdf(sheet), RENDERER.paper_pdf(whole):  # nobody types a command that is on paper
+    for pages in RENDERER.pdf(sheet), RENDERER.pdf(whole):  # nobody types a command that is on paper
         text = " ".join("".join(page_texts(pages)).split())
         assert "coursework" not in text
         assert words(lang)["feedback"]["next"]["on_paper"].split(";")[1].strip() in text.replace("’", "'")
@@ -362,7 +362,7 @@ def test_the_worked_solution_stands_after_the_feedback_in_every_format(lang):
     closure = words(lang)["sheet"]["answer"]
     for text in (
         "".join(page_texts(RENDERER.pdf(sheet))), RENDERER.html(sheet), "".join(_cells(sheet)),
-        "".join(page_texts(RENDERER.paper_pdf(whole))), RENDERER.paper_html(whole), "".join(_cells(whole)),
+        "".join(page_texts(RENDERER.pdf(whole))), RENDERER.html(whole), "".join(_cells(whole)),
     ):  # fmt: skip
         assert title in text
         assert text.index(title) > text.index(words(lang)["feedback"]["legend"])
@@ -377,5 +377,5 @@ def test_exercises_handed_out_one_by_one_keep_the_numbers_of_their_sheets(lang):
     names = papers.context(made, "typ.j2", lambda template, names: "")
     assert [exercise["prefix"] for exercise in names["exercises"]] == ["", "", ""]
     assert [exercise["called"] for exercise in names["exercises"]] == [s.handout.title for s in made.sheets]
-    assert re.search(r'<strong class="no">1</strong>', RENDERER.paper_html(made))
-    assert not re.search(r'<strong class="no">\d\.', RENDERER.paper_html(made))
+    assert re.search(r'<strong class="no">1</strong>', RENDERER.html(made))
+    assert not re.search(r'<strong class="no">\d\.', RENDERER.html(made))

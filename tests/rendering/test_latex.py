@@ -144,23 +144,23 @@ def test_markdown_of_every_kind_and_hostile_text_compile(tmp_path):
 @every_language
 @each_row("make", [handout, answer_sheet, many_given])
 def test_a_source_is_whole_and_the_same_twice(make, lang):
-    source = RENDERER.tex(make(lang), "figure.pdf")
+    source = RENDERER.tex(make(lang), ["figure.pdf"])
     check_source(source)
-    assert source == RENDERER.tex(make(lang), "figure.pdf")
+    assert source == RENDERER.tex(make(lang), ["figure.pdf"])
     assert (r"{figure.pdf}" in source) == (make is not many_given)
 
 
 @every_language
 def test_a_source_prints_names_as_they_are(lang):
-    source = RENDERER.tex(handout(lang, student="100% & {x}_# \\end{document}"), "figure.pdf")
+    source = RENDERER.tex(handout(lang, student="100% & {x}_# \\end{document}"), ["figure.pdf"])
     assert r"\textbf{100\% \& \{x\}\_\# \textbackslash{}end\{document\}}" in source
     assert source.count(r"\end{document}") == 1
     check_source(source)
 
 
 def test_a_source_names_its_paper_and_its_language():
-    assert r"\documentclass[11pt,letterpaper]" in RENDERER.on("letter").tex(handout("en"), "f.pdf")
-    source = RENDERER.tex(handout("fr"), "f.pdf")
+    assert r"\documentclass[11pt,letterpaper]" in RENDERER.on("letter").tex(handout("en"), ["f.pdf"])
+    source = RENDERER.tex(handout("fr"), ["f.pdf"])
     assert r"\documentclass[11pt,a4paper]" in source
     assert "french]{babel}" in source
     assert "{-}12{,}5" in source, "a French decimal comma"
@@ -171,7 +171,7 @@ def test_a_source_names_its_paper_and_its_language():
 def test_a_sheet_compiles_with_a_tex_that_lacks_its_language(lang, tmp_path):
     """Its words are then left whole, and babel is not asked for."""
     (tmp_path / "figure.pdf").write_bytes(RENDERER.figure_pdf(handout(lang)))
-    source = RENDERER.tex(handout(lang), "figure.pdf")
+    source = RENDERER.tex(handout(lang), ["figure.pdf"])
     lacking = re.sub(r"(french|english)(?=\.ldf|\]\{babel)", r"\1ofnowhere", source)
     assert lacking.count("ofnowhere") == 2
     assert "babel.sty" not in compile_latex(lacking, tmp_path).replace("\n", "")
@@ -180,8 +180,8 @@ def test_a_sheet_compiles_with_a_tex_that_lacks_its_language(lang, tmp_path):
 def test_a_box_has_its_unit_or_the_words_that_ask_for_one():
     sheet = handout("en")
     (question,) = [q for q in sheet.questions if q.id == "omega4"]
-    with_unit = RENDERER.tex(replace(sheet, questions=(question,)), "f.pdf")
-    asked = RENDERER.tex(replace(sheet, questions=(replace(question, unit="", asks_unit=True),)), "f.pdf")
+    with_unit = RENDERER.tex(replace(sheet, questions=(question,)), ["f.pdf"])
+    asked = RENDERER.tex(replace(sheet, questions=(replace(question, unit="", asks_unit=True),)), ["f.pdf"])
     assert r"\answerbox{42mm}~rad/s}" in with_unit
     assert r"\answerbox{42mm}~{\small with its unit}}" in asked
 
@@ -194,7 +194,7 @@ def test_a_sheet_and_its_solution_compile_with_a_hostile_name(lang, paper, tmp_p
     asks = tuple(replace(q, unit="", asks_unit=True) for q in sheet.handout.questions)
     (tmp_path / "figure.pdf").write_bytes(RENDERER.figure_pdf(sheet))
     for number, one in enumerate((sheet.handout, replace(sheet.handout, questions=asks), sheet)):
-        log = compile_latex(RENDERER.on(paper).tex(one, "figure.pdf"), tmp_path, f"sheet{number}")
+        log = compile_latex(RENDERER.on(paper).tex(one, ["figure.pdf"]), tmp_path, f"sheet{number}")
         assert "Missing character" not in log
 
 

@@ -49,7 +49,7 @@ _TEXTS = {}  #: of each paper, which stands beside them: a paper that is made no
 def texts(made, size="a4"):
     """The texts of the pages of a paper; typeset once."""
     if (id(made), size) not in _TEXTS:
-        pages = page_texts(RENDERER.on(size).paper_pdf(made))
+        pages = page_texts(RENDERER.on(size).pdf(made))
         _TEXTS[id(made), size] = made, [plainly(text) for text in pages]
     return _TEXTS[id(made), size][1]
 
@@ -88,16 +88,16 @@ def test_nobodys_paper_has_room_for_the_name_on_every_page(lang):
 def test_the_seeds_alone_stand_at_the_foot_where_the_names_have_no_room():
     long = paper(bare("en"), NAMES * 3)
     assert variants(long) == " · ".join(str(7 + place) for place in range(9))
-    assert page_texts(RENDERER.paper_pdf(long))[0].count(variants(long)) == 1
+    assert page_texts(RENDERER.pdf(long))[0].count(variants(long)) == 1
 
 
 @one_language
 @every_kind
 def test_every_paper_is_an_accessible_pdf_and_the_same_bytes_twice(make, lang):
-    made = RENDERER.paper_pdf(make(lang))
+    made = RENDERER.pdf(make(lang))
     assert b"pdfuaid:part" in made
     assert b"<pdfaid:conformance>A<" in made
-    assert RENDERER.paper_pdf(make(lang)) == made
+    assert RENDERER.pdf(make(lang)) == made
 
 
 @every_language
@@ -161,8 +161,8 @@ def test_wherever_an_exercise_comes_its_first_question_has_the_second_on_its_pag
 @one_language
 def test_a_booklet_gives_each_paper_its_own_numbers_from_an_odd_page_on(lang):
     handed = [paper(heading(lang, f"N{k}"), NAMES[: k + 1]) for k in range(3)]
-    made, pages = RENDERER.papers_pdf(handed)
-    alone = [len(page_texts(RENDERER.paper_pdf(one))) for one in handed]
+    made, pages = RENDERER.booklet(handed)
+    alone = [len(page_texts(RENDERER.pdf(one))) for one in handed]
     assert [last - first + 1 for first, last in pages] == alone
     assert all(first % 2 for first, _ in pages)
     assert all(then - last in (1, 2) for (_, last), (then, _) in pairwise(pages))
@@ -224,8 +224,8 @@ def test_the_right_answer_stands_beside_a_wrong_one_unless_it_is_kept_back(lang)
     shown, kept = (feedback(heading(lang), answers=answers) for answers in (True, False))
     wrong = sum(line.points < line.out_of for sheet in shown.sheets for line in sheet.lines)
     assert wrong > 10
-    assert " ".join(texts(shown)).count(right) == RENDERER.paper_html(shown).count(right) == wrong
-    for text in (" ".join(texts(kept)), RENDERER.paper_html(kept)):
+    assert " ".join(texts(shown)).count(right) == RENDERER.html(shown).count(right) == wrong
+    for text in (" ".join(texts(kept)), RENDERER.html(kept)):
         assert right not in text
     whole = replace(
         shown, sheets=tuple(replace(s, lines=tuple(map(rewarded, s.lines))) for s in shown.sheets)
@@ -243,7 +243,7 @@ def test_feedback_calls_a_question_as_the_paper_does(lang):
     noun = words(lang)["sheet"]["question"]["one"].capitalize()
     (line,) = [line for line in made.sheets[1].lines if line.question.choices]
     assert line.says.startswith(f"{noun} 3")
-    for text in (" ".join(texts(made)), RENDERER.paper_html(made)):
+    for text in (" ".join(texts(made)), RENDERER.html(made)):
         assert f"{noun} 2.3" in text
         assert not re.search(rf"{noun} \d(?!\.)", text)
 
@@ -251,7 +251,7 @@ def test_feedback_calls_a_question_as_the_paper_does(lang):
 @every_language
 @every_kind
 def test_a_page_of_a_paper_fetches_nothing_and_no_two_parts_share_an_id(make, lang):
-    page = RENDERER.paper_html(make(lang))
+    page = RENDERER.html(make(lang))
     assert len(runs(page)) == isinstance(make(lang), Paper)
     assert allowed(page) == [digest(script) for script in runs(page)]
     assert not re.search(r"https?:", page)
@@ -264,7 +264,7 @@ def test_a_page_of_a_paper_fetches_nothing_and_no_two_parts_share_an_id(make, la
 
 
 def test_questions_of_one_name_in_two_exercises_are_answered_apart():
-    page = RENDERER.paper_html(paper(heading("en"), ("grashof", "four_bar_positions", "grashof")))
+    page = RENDERER.html(paper(heading("en"), ("grashof", "four_bar_positions", "grashof")))
     groups = set(re.findall(r'type="radio" name="([^"]+)"', page))
     assert groups == {f"e{place}-linkage_type" for place in (1, 2, 3)}
 
@@ -273,8 +273,8 @@ def test_questions_of_one_name_in_two_exercises_are_answered_apart():
 @each_row("student", ["", "Zoé"])
 def test_a_notebook_has_a_cell_of_answers_an_exercise_that_says_whose_it_is(lang, student):
     handed = paper(heading(lang, student), (*NAMES, "grashof"))
-    text = RENDERER.paper_notebook(handed)
-    assert text == RENDERER.paper_notebook(handed)
+    text = RENDERER.notebook(handed)
+    assert text == RENDERER.notebook(handed)
     nbformat.validate(nbformat.reads(text, as_version=4))
     book = json.loads(text)
     sheets = [{"exercise": h.exercise, "seed": h.seed} for h in handed.handouts]
@@ -305,24 +305,22 @@ def png(wide: int, high: int) -> bytes:
 @each_row(("data", "form"), [(png(40, 10), "png"), (heading("en").logo.data, "svg")])
 def test_a_logo_is_a_picture_told_in_words(data, form):
     handed = paper(replace(heading("en"), logo=Logo(data, form, "A <blue> & white sign")), NAMES[:1])
-    assert b"pdfuaid:part" in RENDERER.paper_pdf(handed)
-    assert 'alt="A &lt;blue&gt; &amp; white sign"' in RENDERER.paper_html(handed)
-    assert RENDERER.paper_pdf(handed) != RENDERER.paper_pdf(
-        paper(replace(heading("en"), logo=None), NAMES[:1])
-    )
+    assert b"pdfuaid:part" in RENDERER.pdf(handed)
+    assert 'alt="A &lt;blue&gt; &amp; white sign"' in RENDERER.html(handed)
+    assert RENDERER.pdf(handed) != RENDERER.pdf(paper(replace(heading("en"), logo=None), NAMES[:1]))
 
 
 @each_row(("data", "form"), [(b"GIF89a", "png"), (png(1, 1), "svg"), (b"", "svg"), (b"", "png")])
 def test_a_logo_of_another_format_is_refused(data, form):
     with pytest.raises(BadInput, match=r"logo is not an? (PNG|SVG)"):
-        RENDERER.paper_pdf(paper(replace(heading("en"), logo=Logo(data, form, ALT["en"])), NAMES[:1]))
+        RENDERER.pdf(paper(replace(heading("en"), logo=Logo(data, form, ALT["en"])), NAMES[:1]))
 
 
 @every_language
 def test_latex_of_a_paper_names_its_figures_and_closes_what_it_opens(lang):
     files = [f"{place}.figure.pdf" for place in range(3)]
     for made in (paper(heading(lang, cover=True)), paper(bare(lang)), solution(heading(lang))):
-        source = RENDERER.paper_tex(made, files)
+        source = RENDERER.tex(made, files)
         assert all(source.count(f"{{{name}}}") == 1 for name in files)
         assert source.count("\\begin{") == source.count("\\end{")
         assert source.count("{") - source.count("\\{") == source.count("}") - source.count("\\}")
@@ -333,7 +331,7 @@ def test_latex_of_a_paper_names_its_figures_and_closes_what_it_opens(lang):
 @one_language
 def test_a_name_that_no_font_draws_is_printed_with_squares_and_stops_nobodys_paper(lang):
     for made in (paper(heading(lang, "李 明")), solution(heading(lang, "李 明"))):
-        assert "□ □" in page_texts(RENDERER.paper_pdf(made))[0]
-    made, pages = RENDERER.papers_pdf([paper(bare(lang, name), NAMES[:1]) for name in ("李 明", "Zoé Roy")])
+        assert "□ □" in page_texts(RENDERER.pdf(made))[0]
+    made, pages = RENDERER.booklet([paper(bare(lang, name), NAMES[:1]) for name in ("李 明", "Zoé Roy")])
     assert len(pages) == 2
     assert "Zoé Roy" in "".join(page_texts(made))

@@ -64,7 +64,7 @@ def test_each_sheet_of_a_booklet_starts_on_an_odd_page_and_counts_its_own_pages(
     assert len(pages) == 5
     blank = min(map(len, pages))
     assert [len(page) == blank for page in pages] == [False, True, False, True, False]
-    assert RENDERER.booklet_pdf(sheets) == RENDERER.booklet_pdf(sheets)
+    assert RENDERER.pdf(*sheets) == RENDERER.pdf(*sheets)
 
 
 def test_feedback_sheets_follow_one_another_without_a_blank_page():

@@ -26,5 +26,5 @@ def white(page) -> float:
 def test_no_page_but_the_last_is_white_by_more_than_a_quarter(seed):
     names = tuple(random.Random(seed).sample(COURSE.names, 4))
     made = paper(heading(("fr", "en")[seed % 2]), names, seed=seed)
-    pages = list(pypdfium2.PdfDocument(RENDERER.paper_pdf(made)))[:-1]
+    pages = list(pypdfium2.PdfDocument(RENDERER.pdf(made)))[:-1]
     assert {n: share for n, page in enumerate(pages, 1) if (share := white(page)) > MOST} == {}, names

@@ -201,7 +201,7 @@ def _notebook(
         text = renderer.notebook(handouts[0], collected=True)
     else:
         paper_of_student = _paper(nb_assignment, paper, student=student).paper(paper[0].langs[0])
-        handouts, text = paper_of_student.handouts, renderer.paper_notebook(paper_of_student, collected=True)
+        handouts, text = paper_of_student.handouts, renderer.notebook(paper_of_student, collected=True)
     return for_nbgrader(json.loads(text), handouts, personal=personal)
 
 

@@ -63,7 +63,7 @@ def _printed(request: Request, papers: Sequence[StudentPaper], stem: str) -> Ite
     renderer = renderer_of(request.site.course.folder)
     for lang in dict.fromkeys(paper.lang for paper in papers):
         for name, part in parted(f"{stem}.{lang}", [paper for paper in papers if paper.lang == lang]):
-            yield f"{name}.pdf", renderer.papers_pdf([paper.paper for paper in part])[0]
+            yield f"{name}.pdf", renderer.booklet([paper.paper for paper in part])[0]
 
 
 ROUTES = (

@@ -216,9 +216,9 @@ def files(request: Request) -> Response:
     state, paper = state_and_paper(request)
     renderer, stem = renderer_of(request.site.course.folder), _stem(state, paper)
     if request.path_params["file"] == "paper.pdf":
-        return Download(renderer.paper_pdf(paper.paper), "application/pdf", f"{stem}.pdf")
+        return Download(renderer.pdf(paper.paper), "application/pdf", f"{stem}.pdf")
     if request.path_params["file"] == "notebook.ipynb":
-        data = renderer.paper_notebook(paper.paper).encode()
+        data = renderer.notebook(paper.paper).encode()
         return Download(data, "application/x-ipynb+json", f"{stem}.ipynb")
     raise HTTPException("page", 404)
 

@@ -188,7 +188,7 @@ def _looked_at(request: Request) -> Response:
     try:
         stated = new_assignment.stated_assignment(request)
         paper = preview_paper(request.site, stated.definition, request.lang)
-        images = renderer_of(request.site.course.folder).paper_images(paper.paper)
+        images = renderer_of(request.site.course.folder).images(paper.paper)
     except CourseworkError as fault:
         if isinstance(fault, HTTPException):
             raise

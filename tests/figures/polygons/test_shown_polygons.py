@@ -31,7 +31,7 @@ def test_a_solution_shows_every_polygon_in_black_and_white_in_every_back_end(nam
     sheet = variant.answer_sheet()
     page, tex = (
         renderer_of(COURSE.folder).html(sheet),
-        renderer_of(COURSE.folder).tex(sheet, "f.pdf", "p.pdf"),
+        renderer_of(COURSE.folder).tex(sheet, ["f.pdf"], ["p.pdf"]),
     )
     assert renderer_of(COURSE.folder).pdf(sheet).startswith(b"%PDF")
     assert len(variant.polygons()) > 0
