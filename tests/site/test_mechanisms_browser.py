@@ -30,6 +30,32 @@ SLIDER_CRANK = (
 )  # fmt: skip
 
 
+#: What drives otherwise, loads, wheels, and a group that closes all together, with a line of each one's file.
+DRAWN = {
+    "jack": (
+        ("ground", (100, 100), (220, 60)), ("bar", (100, 100), (300, 140)), ("jack", (220, 60), (300, 140)), ("load", (200, 120)),
+    ),
+    "moved_slide": (
+        ("ground", (120, 100)), ("bar", (120, 100), (150, 140), (150, 140), (325, 100)), ("slide", (325, 100), (440, 100)),
+        ("driver", (325, 100)), ("load", (150, 140), (150, 40)),
+    ),
+    "wheels": (
+        ("ground", (100, 100), (220, 100)), ("bar", (100, 100), (140, 160), (220, 100), (260, 160)),
+        ("bar", (140, 160), (200, 260), (200, 260), (260, 160)), ("gear", (120, 130), (240, 130)),
+    ),
+    "three_rods": (
+        ("ground", (100, 60), (260, 60), (400, 120)), ("bar", (100, 60), (130, 100)), ("plate", (170, 140), (250, 130), (210, 180), (170, 140)),
+        ("bar", (130, 100), (170, 140), (260, 60), (250, 130), (400, 120), (210, 180)),
+    ),
+}  # fmt: skip
+SAYS = {
+    "jack": "105 mm … 125 mm",
+    "moved_slide": "165 mm …",
+    "wheels": "3; 4, 5 (RRR)",
+    "three_rods": "3, 4, 5, 6 (III)",
+}
+
+
 def tapped(page, x, y):
     surface = page.locator(".draw svg")
     surface.scroll_into_view_if_needed()
@@ -58,7 +84,7 @@ def text_of(page):
 def shown(page, piece):
     """Wait until the view says something; a page allows no other way of waiting."""
     until = time.monotonic() + 90
-    while piece not in page.inner_text("#mechanism-now"):
+    while piece not in " ".join(page.inner_text("#mechanism-now").split()):
         assert time.monotonic() < until, page.inner_text("#mechanism-now")
         time.sleep(0.1)
 
@@ -79,6 +105,37 @@ def test_a_drawn_slider_crank_is_an_exercise_with_the_right_answers(desk, window
     x, y = (crank * f(math.radians(variant.given["theta2"])) for f in (math.cos, math.sin))
     assert variant.solution()["s_B"] == pytest.approx(x + math.sqrt(bar**2 - (20 - y) ** 2))
     assert (serious(page), too_wide(page), low(page), faults) == ([], 0, [], [])
+
+
+def test_jacks_wheels_loads_and_groups_of_three_are_drawn(desk, window):
+    """Answers against the law of cosines, and thrusts against the work of the load between two positions near each other."""
+    page = window("/mechanisms/new")
+    for name, steps in DRAWN.items():
+        drawn(page, typed, steps)
+        shown(page, SAYS[name])
+        page.fill("[name=name]", name)
+        page.click("button[value=save]")
+        page.wait_for_url("**saved=1")
+        page.goto(page.url.replace(f"{name}?saved=1", "new"))
+    jack, slide = (desk[0].site.course[name].variant(2, "en") for name in ("jack", "moved_slide"))
+    apart, arm = math.hypot(120, 40), jack.given["r2"]
+
+    def lifted(length):
+        inner = (arm**2 + apart**2 - length**2) / (2 * arm * apart)
+        return math.atan2(-40, 120) + math.acos(inner)
+
+    length, step, work = jack.given["L"], 1e-4, 20_000  # N mm a radian
+    assert jack.solution()["theta2"] == pytest.approx(math.degrees(lifted(length)))
+    turned = lifted(length + step) - lifted(length - step)
+    assert abs(jack.solution()["thrust"]) == pytest.approx(work * turned / (2 * step), rel=1e-5)
+
+    def high(reach):
+        crank, rod = slide.given["r2"], slide.given["r3"]
+        return crank * math.sin(math.acos((crank**2 + reach**2 - rod**2) / (2 * crank * reach)))
+
+    reach = slide.given["s_B"]
+    risen = (high(reach + step) - high(reach - step)) / (2 * step)
+    assert abs(slide.solution()["thrust"]) == pytest.approx(100 * abs(risen), rel=1e-5)
 
 
 def test_undo_moves_and_boxes_keep_what_the_drawing_does_not_change(window):

@@ -1,5 +1,5 @@
-// Draws a linkage, and writes it as the text of its file: points, bars and plates, slides, the driver. Millimetres, y upwards; lengths
-// are rounded to 5 mm and angles to 5°. What is drawn stays in the text's first line, which a page that is opened again reads.
+// Draws a linkage, and writes it as the text of its file: points, bars and plates, slides, wheels, a jack, a load, the driver: a bar,
+// the jack, or a slide on the ground (by). Millimetres, y upwards; lengths are rounded to 5 mm and angles to 5°. What is drawn stays in the text's first line, which a page that is opened again reads.
 (function () {
   "use strict";
   const place = document.querySelector(".draw");
@@ -46,24 +46,38 @@
     return name;
   }
   function remove(c) {
-    const name = point(c), body = bodyAt(c);
+    const name = point(c), body = bodyAt(c), jack = now.jack;
     if (name) {
       delete now.points[name];
       now.bodies = now.bodies.map((one) => one.filter((n) => n !== name));
       now.slides = now.slides.filter((one) => one.p !== name);
+      if (jack && jack.includes(name)) delete now.jack;
+      if (now.load && now.load.p === name) delete now.load;
     } else if (body >= 0) now.bodies[body] = [];
+    else if (jack && gap(at(jack[0]), at(jack[1]), c) < 14 * unit()) delete now.jack;
     const gone = (k) => !now.bodies[k] || now.bodies[k].length < 2;
     now.slides = now.slides.filter((one) => one.on === undefined || !gone(one.on));
     const kept = now.bodies.map((_, k) => k).filter((k) => !gone(k));
     now.slides.forEach((one) => { if (one.on !== undefined) one.on = kept.indexOf(one.on); });
+    if (now.gears) now.gears = now.gears.filter((pair) => !pair.some(gone)).map((pair) => pair.map((k) => kept.indexOf(k)));
+    if (now.load && now.load.on >= 0 && (now.load.on = kept.indexOf(now.load.on)) < 0) delete now.load;
+    if (now.by && !rails(now).some((one) => one.p === now.by)) delete now.by;
     now.driver = kept.indexOf(now.driver);
     now.bodies = kept.map((k) => now.bodies[k]);
+  }
+  const rails = (state) => state.slides.filter((one) => one.on === undefined);
+  // One thing drives.
+  function drive(what) {
+    delete now.jack;
+    delete now.by;
+    now.driver = -1;
+    Object.assign(now, what);
   }
   function join() {
     const body = [...new Set(marks)];
     marks = [];
     now.bodies.push(body);
-    if (!(now.driver >= 0) && body.length === 2 && body.some((n) => at(n).g)) now.driver = now.bodies.length - 1;
+    if (!(now.driver >= 0) && !now.jack && !now.by && body.length === 2 && body.some((n) => at(n).g)) now.driver = now.bodies.length - 1;
   }
   const acts = {
     ground(c) {
@@ -100,9 +114,33 @@
       });
     },
     driver(c) {
+      const k = bodyAt(c), name = point(c);
+      if (rails(now).some((one) => one.p === name)) change(() => drive({ by: name }));
+      else if (k < 0 || !now.bodies[k].some((n) => at(n).g)) tell(said.no_driver);
+      else change(() => drive({ driver: k }));
+    },
+    jack(c) {
+      change(() => {
+        const name = point(c) || create(c);
+        if (name && !marks.includes(name)) marks.push(name);
+        if (marks.length === 2) { drive({ jack: marks }); marks = []; }
+      });
+    },
+    gear(c) {
       const k = bodyAt(c);
-      if (k < 0 || !now.bodies[k].some((n) => at(n).g)) tell(said.no_driver);
-      else change(() => { now.driver = k; });
+      if (k < 0 || !pivot(now, k)) { tell(said.no_gear); return; }
+      if (!marks.length) { marks = [k]; tell(said.gear_too); return; }
+      const pair = [marks[0], k], same = (one) => one.every((n) => pair.includes(n));
+      marks = [];
+      tell(said.gear);
+      if (pair[0] !== k) change(() => { const all = now.gears || []; now.gears = all.some(same) ? all.filter((one) => !same(one)) : [...all, pair]; });
+    },
+    load(c) {
+      const name = marks[0], near = point(c), k = bodyAt(c);
+      marks = [];
+      if (name) change(() => { now.load = { p: name, a: half(heading(at(name), c)) }; });
+      else if (near) { marks = [near]; render(); }
+      else if (k >= 0) change(() => { if (now.load && now.load.on === k) delete now.load; else now.load = { on: k }; });
     },
     move(c) {
       const near = point(c), name = held;
@@ -113,11 +151,13 @@
   };
 
   // --- text
+  const pivot = (state, k) => (state.bodies[k] || []).find((n) => state.points[n].g);
   function compose(state) {
     const given = new Map(), ground = [], bodies = [], slides = [], sides = [], turns = [], P = state.points;
     const put = (name, value, u = "mm") => { given.set(name, `${name} = "${value} ${u}"`); return name; };
     const order = state.bodies.map((_, k) => k).sort((a, b) => (b === state.driver) - (a === state.driver) || a - b);
-    const drive = state.bodies[state.driver] || [], pivot = drive.find((n) => P[n].g), origin = P[pivot] || { x: 0, y: 0 };
+    const drive = state.bodies[state.driver] || [], hub = pivot(state, state.driver), slid = rails(state).find((one) => one.p === state.by);
+    const origin = P[hub || Object.keys(P).find((n) => P[n].g)] || { x: 0, y: 0 };
     const number = (k) => order.indexOf(k) + 2, first = (body) => body.find((n) => P[n].g) || body[0];
     for (const [n, c] of Object.entries(P)) {
       if (!c.g) continue;
@@ -125,7 +165,7 @@
       ground.push(`${n} = [${place.join(", ")}]`);
     }
     for (const k of order) {
-      const body = state.bodies[k], start = k === state.driver ? pivot : first(body), [next, ...rest] = body.filter((n) => n !== start);
+      const body = state.bodies[k], start = k === state.driver ? hub : first(body), [next, ...rest] = body.filter((n) => n !== start);
       const axis = heading(P[start], P[next]), j = number(k);
       const others = [`${next} = "${put(`r${j}`, Math.max(STEP, round(far(P[start], P[next]))))}"`];
       for (const n of rest) {
@@ -143,12 +183,21 @@
         : `on = "${number(one.on)}", through = "${first(state.bodies[one.on])}"`;
       slides.push(`${one.p} = { of = "${j}", ${way}, distance = "${distance}" }`);
     });
-    // A pair of bodies from points that stand already: of two ways to close it, the drawn one.
-    const placed = new Set([...Object.keys(P).filter((n) => P[n].g), ...drive]), left = new Set(order.filter((k) => k !== state.driver));
-    const settle = (...all) => all.forEach((k) => { left.delete(k); state.bodies[k].forEach((n) => placed.add(n)); });
+    const J = state.bodies.length + state.slides.length + 2, length = state.jack ? round(far(P[state.jack[0]], P[state.jack[1]])) : 0;
+    const jacks = state.jack ? [`${J} = { from = "${state.jack[0]}", to = "${state.jack[1]}", rod = "${J + 1}", length = "L" }`] : [];
+    const gears = (state.gears || []).map((pair, k) => {
+      const apart = far(P[pivot(state, pair[0])], P[pivot(state, pair[1])]), wheels = pair.map((n) => put(`R${number(n)}`, Math.max(STEP, round(apart / 2))));
+      return `G${k || ""} = { first = "${number(pair[0])}", second = "${number(pair[1])}", carrier = "ground", radii = ["${wheels.join('", "')}"] }`;
+    });
+    // A pair of bodies from points that stand already: of two ways to close it, the drawn one. A jack counts as a bar.
+    const bars = state.jack ? [...state.bodies, state.jack] : state.bodies, left = new Set([...order, ...(state.jack ? [state.bodies.length] : [])]);
+    const placed = new Set([...Object.keys(P).filter((n) => P[n].g), ...(slid ? [slid.p] : [])]);
+    const settle = (...all) => all.forEach((k) => { left.delete(k); bars[k].forEach((n) => placed.add(n)); });
+    if (drive.length) settle(state.driver);
+    for (const pair of state.gears || []) if (pair.includes(state.driver)) settle(...pair);
     for (let tries = left.size + 1; tries; tries -= 1) {
       for (const k of left) {
-        const body = state.bodies[k], start = body.find((n) => placed.has(n));
+        const body = bars[k], start = body.find((n) => placed.has(n));
         if (!start) continue;
         const rail = state.slides.find((one) => one.on === undefined && body.includes(one.p) && !placed.has(one.p));
         const guide = state.slides.find((one) => one.on === k && placed.has(one.p));
@@ -158,29 +207,51 @@
           settle(k);
         } else if (guide) settle(k);
         else {
-          const mate = [...left].find((m) => m !== k && state.bodies[m].some((n) => placed.has(n)) && state.bodies[m].some((n) => body.includes(n) && !placed.has(n)));
+          const mate = [...left].find((m) => m !== k && bars[m].some((n) => placed.has(n)) && bars[m].some((n) => body.includes(n) && !placed.has(n)));
           if (mate === undefined) continue;
-          const inner = state.bodies[mate].find((n) => body.includes(n) && !placed.has(n)), end = state.bodies[mate].find((n) => placed.has(n));
+          const inner = bars[mate].find((n) => body.includes(n) && !placed.has(n)), end = bars[mate].find((n) => placed.has(n));
           const [p, q, b] = [P[start], P[end], P[inner]], cross = (q.x - p.x) * (b.y - p.y) - (q.y - p.y) * (b.x - p.x);
           sides.push(`${inner} = "${cross < 0 ? "right" : "left"} of ${start} -> ${end}"`);
           settle(k, mate);
         }
       }
     }
-    given.set("theta2", 'theta2 = { from = "-175 deg", to = "180 deg", step = "5 deg" }');
-    given.set("omega2", 'omega2 = "10 rad/s"');
-    const asked = [...turns, ...state.slides.map((one) => `s_${one.p}`)], list = (all) => all.map((n) => `"${n}"`).join(", ");
+    // What is left closes all together, from where it is drawn.
+    const open = new Set([...left].flatMap((k) => bars[k]).filter((n) => !placed.has(n)));
+    if (open.size) {
+      const from = drive.length ? `angle = "${half(heading(origin, P[drive.find((n) => n !== hub)]))} deg"` : `length = "${slid ? along(state, slid, origin) : length} mm"`;
+      sides.push(`near = { ${[from, ...[...open].map((n) => `${n} = ["${P[n].x - origin.x} mm", "${P[n].y - origin.y} mm"]`)].join(", ")} }`);
+    }
+    const ranged = (name, value, out) => given.set(name, `${name} = { from = "${value - out} mm", to = "${value + out} mm", step = "5 mm" }`);
+    const fast = slid ? `s_${slid.p}_dot` : "L_dot";
+    if (state.jack) ranged("L", length, Math.max(STEP, round(length / 10)));
+    else if (slid) ranged(`s_${slid.p}`, along(state, slid, origin), 40);
+    if (state.jack || slid) given.set(fast, `${fast} = "80 mm/s"`);
+    else {
+      given.set("theta2", 'theta2 = { from = "-175 deg", to = "180 deg", step = "5 deg" }');
+      given.set("omega2", 'omega2 = "10 rad/s"');
+    }
+    const asked = [...turns, ...state.slides.filter((one) => one !== slid).map((one) => `s_${one.p}`)], list = (all) => all.map((n) => `"${n}"`).join(", ");
     const rates = asked.map((n) => (n.startsWith("theta") ? n.replace("theta", "omega") : `${n}_dot`));
-    const ask = asked.length ? `positions = [${list(asked)}]\nvelocities = [${list(rates)}]` : "mobility = true";
-    const tables = [["ground", ground], ["bodies", bodies], ["slides", slides], ["assembly", sides]].filter(([, all]) => all.length);
-    return { given, ask: `[ask]\n${ask}\n`, tables: tables.map(([name, all]) => `[${name}]\n${all.join("\n")}\n`).join("\n"), shape: asked.join() + Object.keys(P) };
+    const ask = asked.length ? `positions = [${list(asked)}]\nvelocities = [${list(rates)}]` : "mobility = true", weight = state.load;
+    const load = weight && `${state.jack || slid ? "thrust" : "torque"} = { load = { ${weight.p ? `on = "${weight.p}", force = "100 N", angle = "${weight.a} deg"` : `on = "${number(weight.on)}", moment = "20 N*m"`} } }`;
+    const tables = [["ground", ground], ["bodies", bodies], ["slides", slides], ["jacks", jacks], ["gears", gears], ["assembly", sides]].filter(([, all]) => all.length);
+    return { given, ask: `[ask]\n${ask}\n`, load: load || "", tables: tables.map(([name, all]) => `[${name}]\n${all.join("\n")}\n`).join("\n"), shape: asked.join() + Object.keys(P) };
+  }
+  // Where a slide on the ground is drawn, along it.
+  function along(state, one, origin) {
+    const c = state.points[one.p];
+    if (one.a % 180 === 0) return Math.cos(one.a * Math.PI / 180) * (c.x - origin.x);
+    return (one.a + 90) % 180 === 0 ? Math.sin(one.a * Math.PI / 180) * (c.y - origin.y) : 0;
   }
   // What the boxes, or a hand, have changed stays where the drawing has not.
   function write(before) {
     if (!now.bodies.length) return;
     const text = area().value, was = compose(before), is = compose(now), line = (name) => (text.match(new RegExp(`^${name} *=.*$`, "m")) || [""])[0];
     const given = [...is.given].map(([name, says]) => (was.given.get(name) === says && line(name)) || says);
-    const same = was.shape === is.shape, ask = (same && (text.match(/^\[ask\][^]*$/m) || [""])[0]) || is.ask;
+    const same = was.shape === is.shape;
+    let ask = (same && (text.match(/^\[ask\][^]*$/m) || [""])[0]) || is.ask;
+    if (!same || was.load !== is.load) ask = [...ask.split("\n").filter((one) => one && !/^(torque|thrust) *=/.test(one)), is.load, ""].filter((one, k, all) => one || k === all.length - 1).join("\n");
     if (same && line("require")) given.push(line("require"));
     area().value = `${MARK}${JSON.stringify(now)}\n${line("title") || said.untitled}\n\n[given]\n${given.join("\n")}\n\n${is.tables}\n${ask}`;
     area().dispatchEvent(new Event("input", { bubbles: true }));
@@ -204,11 +275,25 @@
     for (const one of now.slides) {
       const c = at(one.p), turn = one.on === undefined ? one.a : heading(at(now.bodies[one.on][0]), at(now.bodies[one.on][1]));
       if (one.on === undefined) piece("path", { d: "M-60 0H60", transform: `translate(${c.x} ${y(c)}) rotate(${-turn})`, stroke: "#777", "stroke-width": 1.5, "stroke-dasharray": "6 4" });
-      piece("rect", { x: -12, y: -7, width: 24, height: 14, fill: "#fff", stroke: "#000", "stroke-width": 1.5, transform: `translate(${c.x} ${y(c)}) rotate(${-turn})` });
+      piece("rect", { x: -12, y: -7, width: 24, height: 14, fill: "#fff", stroke: one.p === now.by ? "#0a58a8" : "#000", "stroke-width": 1.5, transform: `translate(${c.x} ${y(c)}) rotate(${-turn})` });
     }
     now.bodies.forEach((body, k) => piece("polygon", {
       points: body.map((n) => `${at(n).x},${y(at(n))}`).join(" "), stroke: k === now.driver ? "#0a58a8" : "#000", "stroke-width": k === now.driver ? 5 : 3.5,
       "stroke-linejoin": "round", fill: "#0002" }));
+    for (const pair of now.gears || []) {
+      const hubs = pair.map((k) => at(pivot(now, k)));
+      for (const c of hubs) piece("circle", { cx: c.x, cy: y(c), r: far(...hubs) / 2, fill: "none", stroke: "#555", "stroke-width": 1.5, "stroke-dasharray": "8 3 2 3" });
+    }
+    if (now.jack) {
+      const [p, q] = now.jack.map(at), middle = { x: (p.x + q.x) / 2, y: (p.y + q.y) / 2 };
+      piece("path", { d: `M${p.x} ${y(p)}L${q.x} ${y(q)}`, stroke: "#0a58a8", "stroke-width": 3 });
+      piece("path", { d: `M${p.x} ${y(p)}L${middle.x} ${y(middle)}`, stroke: "#0a58a8", "stroke-width": 11 });
+    }
+    if (now.load) {
+      const body = now.bodies[now.load.on], c = body ? { x: (at(body[0]).x + at(body[1]).x) / 2, y: (at(body[0]).y + at(body[1]).y) / 2 } : at(now.load.p);
+      const d = body ? "M-16 0A16 16 0 1 1 0 16m0 0l8 -6m-8 6l8 6" : "M0 0H46m0 0l-10 -6m10 6l-10 6";
+      piece("path", { d, transform: `translate(${c.x} ${y(c)}) rotate(${body ? 0 : -now.load.a})`, fill: "none", stroke: "#a03000", "stroke-width": 3 });
+    }
     for (const [n, c] of Object.entries(now.points)) {
       if (c.g) piece("path", { d: `M${c.x} ${y(c)}l-9 14h18z`, fill: "#ccc", stroke: "#000" });
       piece("circle", { cx: c.x, cy: y(c), r: marks.includes(n) || n === held ? 8 : 5, fill: marks.includes(n) || n === held ? "#0a58a8" : "#fff", stroke: "#000", "stroke-width": 1.5 });
