@@ -24,7 +24,7 @@ _SAMPLE = 9.0  #: length of the line before it, mm
 _LETTER = re.compile(r'<path transform="([^"]*)" d="([^"]*)"/>')
 
 #: Series are told apart without colour, by their marks and dashes.
-_COLOURS = (LINE, WRONG, RIGHT, "#8a5a00", "#6a3d9a", "#007a87", "#555")
+COLOURS = (LINE, WRONG, RIGHT, "#8a5a00", "#6a3d9a", "#007a87", "#555")
 _DASHES = ("", "2 0.8", "2 0.8 0.5 0.8", "0.5 0.7")
 _MARKS = (
     "m-1 0a1 1 0 1 0 2 0a1 1 0 1 0 -2 0z", "m-.9 -.9h1.8v1.8h-1.8z", "m0 -1.3l1.3 1.3l-1.3 1.3l-1.3 -1.3z",
@@ -132,7 +132,7 @@ def scatter(
 
 def _series(position: int, run: Sequence[complex], marked: complex | None = None) -> list[str]:
     """Return the joined points of a series; in a legend, a line with the mark in its middle."""
-    colour = _COLOURS[position % len(_COLOURS)]
+    colour = COLOURS[position % len(COLOURS)]
     dash = _DASHES[position % len(_DASHES)]
     line = "L".join(f"{number(z.real)} {number(z.imag)}" for z in run)
     dashed = f' stroke-dasharray="{dash}"' if dash else ""

@@ -72,7 +72,7 @@ class PagePieces:
 
     def __init__(self, folders: Sequence[Path], lang: str):
         self.folders, self.lang = tuple(folders), lang
-        self._env = environment_of(self.folders, lang)
+        self._env = environment_of(self.folders, lang, goes_dark=False)
 
     def opening(self, item: Item, *, named: bool = True) -> str:
         """Return the part of an item before its questions: statement, figure, data, margins, and, if

@@ -14,7 +14,7 @@ from jinja2 import Environment
 from markupsafe import Markup
 
 from coursework.errors import BadCourse
-from coursework.figures import Beginning, Figure, Picture
+from coursework.figures.dark import dark_rules, darkened
 from coursework.figures.polygons.construction import Construction
 from coursework.language.words import words
 from coursework.markup import markdown as markup
@@ -44,25 +44,28 @@ def page(folders: Sequence[Path], sheet: views.Sheet, paper: str = "a4") -> str:
 
 
 @lru_cache(maxsize=32)
-def environment_of(folders: tuple[Path, ...], lang: str) -> Environment:
+def environment_of(folders: tuple[Path, ...], lang: str, goes_dark: bool = True) -> Environment:
+    """Return the environment of HTML templates; its drawings go dark with the page, unless a platform decides what that is."""
+    image = partial(svg_image, goes_dark=goes_dark)
     filters: dict[str, Callable[..., str]] = {
         "markup": lambda text: markup.to_html(text, lang),
         "inline": lambda text: markup.html_inline(text, lang),
         "math": lambda tex: to_mathml(tex, lang),
         "display": lambda tex: to_mathml(tex, lang, True),
         "formula_words": lambda text: escape(markup.formula_words(text, lang)),
-        "drawing": _drawing,
+        "drawing": lambda figure, alt: image(figure.outlined_svg(), alt),
         "typed": escape,
         "css": _css_string,
         "said": lambda text: escape(markup.plain_line(text, lang)),
         "said_html": lambda text: markup.html_inline(text, lang),
-        "svg_image": svg_image,
+        "svg_image": image,
     }
     env = environment(folders, lang, markup.html_text, filters)
     env.globals.update(
         script=partial(_script, env),
         digest=partial(script_digest, env),
         surface=surface,
+        dark_rules=Markup(dark_rules()),
     )
     return env
 
@@ -85,14 +88,11 @@ def construction(folders: Sequence[Path], drawn: Construction) -> str:
     return render(environment_of(tuple(folders), drawn.lang), "parts/polygons.html.j2", names)
 
 
-def _drawing(figure: Figure | Picture | Beginning, alt: str) -> str:
-    """Return the figure as an image inside the page, its letters as outlines: it looks the same everywhere."""
-    return svg_image(figure.outlined_svg(), alt)
-
-
-def svg_image(svg: str, alt: str) -> str:
-    """Return a drawing as an image inside the page."""
-    return f'<img src="{svg_address(svg)}" alt="{escape(alt)}">'
+def svg_image(svg: str, alt: str, goes_dark: bool = True) -> str:
+    """Return a drawing as an image inside the page, which goes dark with it; one of other colours is turned dark by the page."""
+    shown = darkened(svg) if goes_dark else svg
+    turned = ' class="white"' if goes_dark and shown == svg else ""
+    return f'<img src="{svg_address(shown)}" alt="{escape(alt)}"{turned}>'
 
 
 def svg_address(svg: str) -> str:

@@ -79,7 +79,7 @@ ROUTES: tuple[Route, ...] = (
 _COMPRESSION = StarletteMiddleware(
     GZipMiddleware,
     minimum_size=1000,
-    compresslevel=5,
+    compresslevel=6,
     exclude_content_types=(*DEFAULT_EXCLUDED_CONTENT_TYPES, "application/pdf"),
 )
 

@@ -101,7 +101,7 @@ def test_a_picture_has_its_own_size_unless_told_and_fits_its_room():
 
 def test_a_page_shows_each_with_its_words_and_runs_nothing(built):
     page = next((built[1] / "handouts" / "circuit").glob("*.html")).read_text("utf-8")
-    shown = re.findall(r'<img src="data:image/svg\+xml,([^"]+)" alt="([^"]*)">', page)
+    shown = re.findall(r'<img src="data:image/svg\+xml,([^"]+)" alt="([^"]*)"', page)
     assert [alt for _, alt in shown] == ["Words of figure.", "Words of figure 2.", "Words of figure 3."]
     first, second, _ = (ElementTree.fromstring(unquote(data)) for data, _ in shown)
     assert first.get("viewBox") == "0 0 80 40"

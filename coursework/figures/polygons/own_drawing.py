@@ -14,7 +14,7 @@ from coursework.figures.text import read
 
 _MOST_MM = 150.0  #: width and height at most
 _EDGE_MM = 8.0
-_BENEATH = "#8a8f96"  #: colour of the right construction
+BENEATH = "#8a8f96"  #: colour of the right construction
 _HEAD = 2.6  #: length of the head of an arrow, mm
 
 
@@ -82,10 +82,10 @@ class OwnDrawing:
             c = self._at(centre)
             yield (
                 f'<circle cx="{number(c.real)}" cy="{number(c.imag)}" r="{number(self._shrink * radius)}" fill="none" '
-                f'stroke="{_BENEATH}" stroke-width="0.18" stroke-dasharray="1 1"/>'
+                f'stroke="{BENEATH}" stroke-width="0.18" stroke-dasharray="1 1"/>'
             )
         for start, end in self.right:
-            yield self._stroke(start, end, _BENEATH, 0.25)
+            yield self._stroke(start, end, BENEATH, 0.25)
         for one in self.drawn:
             colour, dash = (RIGHT, "none") if one.is_right else (WRONG, "2 1.2")
             yield self._stroke(one.start, one.end, colour, 0.6, dash)

@@ -15,6 +15,7 @@ from coursework.database.class_summaries import ClassCounts, stored_counts, summ
 from coursework.database.instructor_queries import AssignmentOverview, listed_assignments, stamps
 from coursework.database.permissions import Permission, groups_within
 from coursework.errors import BadInput, CourseworkError
+from coursework.figures.dark import darkened
 from coursework.issuing.issued import Issued
 from coursework.site.desk.class_cache import assignment_title, class_here
 from coursework.site.desk.class_table import computed_table, table_here
@@ -160,7 +161,9 @@ def figure(request: Request) -> Response:
     drawn = question_card(now.course, now.issued, sheet, next(iter(sheet.lines)), request.lang).handout.figure
     if drawn is None:
         raise HTTPException("own", 404)
-    return Response(media_type="image/svg+xml; charset=utf-8", content=drawn.outlined_svg().encode())
+    return Response(
+        media_type="image/svg+xml; charset=utf-8", content=darkened(drawn.outlined_svg()).encode()
+    )
 
 
 ROUTES = (
