@@ -39,10 +39,25 @@ def test_a_name_that_is_not_ours_leads_nowhere(class_of_three):
     assert class_of_three.browser(ZOE).get("/", headers={"host": "evil.example"}).status_code == 421
 
 
-@pytest.mark.parametrize("name", ["sheet.css", "site.css", "site.js", "htmx.min.js"])
+@pytest.mark.parametrize(
+    "name", ["look.css", "sheet.css", "site.css", "basis.js", "answering.js", "htmx.min.js"]
+)
 def test_shared_files_are_kept_by_browsers(class_of_three, name):
     reply = class_of_three.browser().get(f"/static/{name}")
     assert (reply.status_code, "immutable" in reply.headers["cache-control"]) == (200, True)
+
+
+def test_joined_files_hold_each_of_theirs_without_comments(class_of_three):
+    pages = class_of_three.site.pages
+    names = {
+        "look.css": ["fonts.css", "sheet.css", "site.css", "dark.css"],
+        "answering.js": ["sheet.js", "cells.js", "keys.js", "keeping.js"],
+    }
+    for joined, parts in names.items():
+        assert pages.static(joined)[1] == b"\n".join(pages.static(part)[1] for part in parts)
+    assert b"\n//" not in pages.static("drawing.js")[1]
+    assert b"use strict" in pages.static("drawing.js")[1]
+    assert pages.static("answering") is None
 
 
 def test_who_one_is_is_chosen_in_a_demonstration_alone(class_of_three):

@@ -13,7 +13,7 @@ from site_walk import Filled, filled, fillings
 from coursework.site.application import ROUTES
 from coursework.site.frame.cookies import COOKIE
 
-EXERCISE = "slotted_mechanism"
+EXERCISE, LESSON = "slotted_mechanism", "mobility_and_groups"
 
 
 @pytest.mark.e2e
@@ -110,6 +110,25 @@ def test_a_seen_page_opens_without_a_network_and_what_is_typed_goes_when_it_is_b
     while 'value="123"' not in place[0].browser(ZOE).get(path).text:  # another device has it
         assert time.monotonic() < until
         page.wait_for_timeout(200)
+    page.context.close()
+
+
+@pytest.mark.e2e
+def test_a_lesson_opens_without_a_network_with_figures_that_nobody_has_looked_at(place):
+    page = opened(place, ZOE, f"/lessons/{LESSON}")
+    wanted = set(page.locator(".lesson img").evaluate_all("all => all.map((one) => one.src)"))
+    held = "caches.open('figures').then((one) => one.keys()).then((keys) => keys.map((key) => key.url))"
+    until = time.monotonic() + 30
+    while not wanted <= set(page.evaluate(held)):
+        assert time.monotonic() < until
+        page.wait_for_timeout(200)
+    page.context.set_offline(True)
+    page.reload()
+    page.locator("[data-go='1']").tap()
+    sizes = page.evaluate("""Promise.all([...document.querySelectorAll('.lesson img')].map((one) => {
+      one.loading = 'eager'; return one.decode().then(() => one.naturalWidth); }))""")
+    assert len(sizes) > 3
+    assert min(sizes) > 0
     page.context.close()
 
 

@@ -73,6 +73,12 @@
     lesson.addEventListener(failure, (event) => { event.detail.target.textContent = lesson.dataset.notChecked; });
   }
 
+  // A lesson opens without a network with all its figures: they come when the page is there, unless a browser saves data.
+  if (navigator.serviceWorker && !(navigator.connection || {}).saveData) addEventListener("load", () => setTimeout(() => {
+    const files = Array.from(lesson.querySelectorAll("img[loading]"), (image) => [image.src, image.dataset.still || image.src]).flat();
+    navigator.serviceWorker.ready.then((one) => one.active.postMessage({ files: Array.from(new Set(files)) }));
+  }, 1500));
+
   const asked = named(location.hash), stopped = place(name);
   const first = asked >= 0 ? asked : narrow.matches && stopped ? Math.min(Math.max(stopped.step, 1), steps.length) - 1 : 0;
   lesson.classList.add("stepped");

@@ -1,13 +1,13 @@
 // Pages that a person has seen open without a network as well: those that the server marks with ``offline-until``, seconds of the epoch.
 // One person's at a time: they go at signing out, when a page says that somebody else or nobody is signed in, and when their time is over.
 "use strict";
-const SHARED = "shared", PAGES = "pages ", FALLBACK = "/offline", MOST = 60;
+const SHARED = "shared", PAGES = "pages ", FIGURES = "figures", FALLBACK = "/offline", MOST = 60;
 const LEAVING = ["/sign-out", "/sign-in", "/who"];
 let generation = 0;  // pages that were asked for before a clearing are not stored after it
 
 async function clear(except) {
   generation += 1;
-  const others = (await caches.keys()).filter((name) => name.startsWith(PAGES) && name !== except);
+  const others = (await caches.keys()).filter((name) => name !== SHARED && name !== except);
   await Promise.all(others.map((name) => caches.delete(name)));
 }
 const isOver = (reply) => !(1000 * Number(reply.headers.get("offline-until")) > Date.now());
@@ -60,14 +60,16 @@ async function posted(event, path) {
     return new Response(null, { status: 204 });
   }
 }
+const isFigure = (url) => /^\/lessons\/[^/]+\/figures\//.test(new URL(url).pathname);
 async function shared(request) {
-  const cache = await caches.open(SHARED), found = await cache.match(request, { ignoreVary: true });
+  const [name, most] = isFigure(request.url) ? [FIGURES, 6 * MOST] : [SHARED, MOST];
+  const cache = await caches.open(name), found = await cache.match(request, { ignoreVary: true });
   if (found) return found;
   const reply = await fetch(request);
   if (reply.ok) {
     await cache.put(request, reply.clone());
-    const keys = (await cache.keys()).filter((key) => key.url.includes("/static/"));
-    for (const key of keys.slice(0, Math.max(0, keys.length - MOST))) await cache.delete(key);
+    const keys = (await cache.keys()).filter((key) => !key.url.endsWith(FALLBACK));
+    for (const key of keys.slice(0, Math.max(0, keys.length - most))) await cache.delete(key);
   }
   return reply;
 }
@@ -81,19 +83,16 @@ self.addEventListener("activate", (event) => event.waitUntil(Promise.all([self.c
 self.addEventListener("fetch", (event) => {
   const url = new URL(event.request.url), method = event.request.method;
   if (url.origin !== self.location.origin || url.pathname.startsWith("/lti")) return;
-  if (method === "GET" && url.pathname.startsWith("/static/") && url.search) event.respondWith(shared(event.request));
+  if (method === "GET" && (url.pathname.startsWith("/static/") && url.search || isFigure(url))) event.respondWith(shared(event.request));
   else if (event.request.mode !== "navigate") return;
   else if (method === "GET") event.respondWith(page(event));
   else event.respondWith(posted(event, url.pathname));
 });
-// The page that brought this worker was loaded without it.
+// The page that brought this worker was loaded without it; a lesson has figures that nobody has looked at yet.
 self.addEventListener("message", (event) => {
   const began = generation, { seen, files } = event.data || {};
-  if (!seen || event.origin && event.origin !== self.location.origin) return;
-  const address = new URL(seen, self.location.origin);
-  if (address.origin !== self.location.origin) return;
-  event.waitUntil(Promise.all([
-    fetch(address.href, { credentials: "same-origin" }).then((reply) => store(bare(address.href), reply, began)),
-    ...(files || []).map((file) => shared(new Request(new URL(file, self.location.origin)))),
-  ]).catch(() => undefined));
+  const own = (address) => new URL(address, self.location.origin).origin === self.location.origin;
+  if (event.origin && event.origin !== self.location.origin) return;
+  const page = seen && own(seen) ? [fetch(seen, { credentials: "same-origin" }).then((reply) => store(bare(seen), reply, began))] : [];
+  event.waitUntil(Promise.all([...page, ...(files || []).filter(own).map((file) => shared(new Request(file)))]).catch(() => undefined));
 });
