@@ -7,7 +7,7 @@ from collections.abc import Iterable
 from itertools import product
 
 from coursework.figures.charts import COLOURS as SERIES
-from coursework.figures.ink import BLACK, TINT, WHITE
+from coursework.figures.ink import BLACK, SHADES, TINT, WHITE
 from coursework.figures.moving import COLOURS
 from coursework.figures.plot import GRID, LINE, RIGHT, WRONG
 from coursework.figures.polygons.own_drawing import BENEATH
@@ -20,6 +20,10 @@ DARK = {
     WHITE: "#15181c",
     BLACK: "#e4e6e8",
     TINT: "#363d45",
+    SHADES["mid"]: "#4d565f",
+    SHADES["dark"]: "#666f79",
+    SHADES["black"]: "#7d8690",
+    SHADES["glass"]: "#1d3444",
     GRID: "#3c434b",
     LINE: "#a9c9e8",
     RIGHT: "#7fd0a3",

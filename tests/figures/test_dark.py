@@ -7,12 +7,12 @@ from pathlib import Path
 import coursework
 from coursework.figures import Figure, bar
 from coursework.figures.dark import DARK, dark_rules, darkened
-from coursework.figures.ink import BLACK, TINT, WHITE
+from coursework.figures.ink import BLACK, SHADES, WHITE
 from coursework.figures.plot import GRID
 from coursework.rendering.html import environment_of, svg_image
 
 PACKAGE = Path(coursework.__file__).parent
-FAINT = {WHITE, TINT, GRID, "#ddd", "#ccc", "#b8b8b8", "#999"}  #: grounds and grids
+FAINT = {WHITE, GRID, *SHADES.values(), "#ddd", "#ccc", "#b8b8b8", "#999"}  #: grounds, fills and grids
 
 
 def linear(colour):

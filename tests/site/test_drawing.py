@@ -41,6 +41,20 @@ def test_a_drawing_is_stored_and_shown_to_its_author_alone(class_of_three):
     assert shown(page, "a-drawing") == shown(zoe.page(), "a-drawing") == TEXT.replace("12.5", "13.5")
 
 
+def test_the_solution_of_practice_shows_what_was_drawn_over_the_right_construction(class_of_three):
+    zoe = Practising(class_of_three, class_of_three.browser(ZOE), "two_circles")
+    points = {"p": "(80; 30)", "a": "(95; 40)", "c": "(120; 30)", "b1": "(90; 70)"}
+    zoe.send({"kl": "2", **points}, check="")
+    zoe.browser.fill(f"{zoe.address}/solution")
+    page = zoe.browser.get(f"{zoe.address}/solution").text
+    assert page.count("Your drawing over the right construction") == 2  # to see, and to hear
+    fresh = Practising(class_of_three, class_of_three.browser(MAX), "two_circles")
+    fresh.browser.fill(f"{fresh.address}/solution")
+    page = fresh.browser.get(f"{fresh.address}/solution").text
+    assert "Worked solution" in page
+    assert "Your drawing" not in page
+
+
 def test_a_drawing_opens_no_element_and_has_its_size(class_of_three):
     zoe = Practising(class_of_three, class_of_three.browser(ZOE), "joint_graph")
     store = f"{zoe.address}/draft"

@@ -13,6 +13,7 @@ from starlette.responses import HTMLResponse, Response
 from coursework.database.drafts import sheets
 from coursework.database.permissions import Permission
 from coursework.database.progress import PersonProgress
+from coursework.gradebook.own_drawings import own_drawings
 from coursework.marking.marking import mark
 from coursework.rendering import motion_page, views
 from coursework.rendering.displayed import DisplayedAnimation
@@ -262,7 +263,8 @@ def read(request: Request) -> Response:
 
 
 def solution(request: Request) -> Response:
-    """Return the worked solution, after a confirmation that the variant then no longer counts."""
+    """Return the worked solution, with what the student drew over the right construction, after a confirmation that the variant
+    then no longer counts."""
     work = _worksheet(request)
     if request.is_post:
         work.attempt.reveal()
@@ -271,6 +273,8 @@ def solution(request: Request) -> Response:
     if not work.attempt.is_example:
         return request.render("site/student/practice_sure", **names)
     sheet_ = answer_sheet(work.variant)
+    answers = {name: text for name, text in work.box_contents().items() if not is_blank(text)}
+    names["drawings"] = own_drawings(work.variant, mark(work.variant, answers))
     return request.render("site/student/practice_solution", **{**views.context(sheet_), **names})
 
 
