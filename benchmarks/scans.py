@@ -35,7 +35,7 @@ import scanned_pages as simulated  # noqa: E402
 
 from coursework import open_course  # noqa: E402
 from coursework.marking.marking import mark_alone  # noqa: E402
-from coursework.scanning.digits import read_digits  # noqa: E402
+from coursework.scanning.digits import LIKELY, read_candidates  # noqa: E402
 from coursework.scanning.pages import read_page  # noqa: E402
 from coursework.scanning.pictures import PageImage  # noqa: E402
 from coursework.sheets.answer_pages import AnswerField, AnswerPage, answer_pages, paper_code  # noqa: E402
@@ -171,7 +171,7 @@ def one(index: int, page: AnswerPage, file: str, only: str = "") -> dict[str, An
     scan = simulated.KINDS[kind](rng)
     picture = simulated.scanned(filled, scan, rng)
     start = time.perf_counter()
-    read = read_page(PageImage(file, 1, picture), {page.code_text.split()[1]: (page,)}, read_digits)
+    read = read_page(PageImage(file, 1, picture), {page.code_text.split()[1]: (page,)}, read_candidates)
     seconds = time.perf_counter() - start
     row: dict[str, Any] = {
         "index": index,
@@ -187,8 +187,10 @@ def one(index: int, page: AnswerPage, file: str, only: str = "") -> dict[str, An
         if said.waits and not meant.waits:
             counts[f"why {said.waits}"] += 1
             if said.waits == "doubted" and student.value(said.field) is not None:
-                is_right = [student.is_right(said.field, text) for text in (said.text, meant.text)]
-                row["doubted"].append((said.confidence, said.text == meant.text, *is_right))
+                right = sum(c for text, c in said.candidates if student.is_right(said.field, text))
+                row["doubted"].append(
+                    (right, said.text == meant.text, student.is_right(said.field, meant.text))
+                )
         elif _became(said, meant) == "wrong":
             place = said.field.part, said.field.coordinate
             row["wrong"].append((*place, said.text, meant.text, meant.how, said.confidence))
@@ -249,28 +251,28 @@ def table(folder: Path) -> None:
 
 
 def doubted(folder: Path) -> None:
-    """What is taken of the doubted numbers that are right answers, by the least confidence, a place answered by a number
-    that need not wait being one."""
+    """What is taken of the doubted numbers, by the least probability of a right answer."""
     by: dict[str, list[dict[str, Any]]] = defaultdict(list)
     for row in kept(folder):
         by[row["kind"]].append(row)
         by["all"].append(row)
     print(
-        "| scanned as | pages | places | doubted | least confidence | taken | taken though something else was wrong | a person besides |"
+        "| scanned as | pages | places | doubted | least probability | taken | of the right ones | taken though something else was wrong | a person besides |"
     )
-    print("|---|--:|--:|--:|--:|--:|--:|--:|")
+    print("|---|--:|--:|--:|--:|--:|--:|--:|--:|")
     for kind, rows in by.items():
         total: Counter[str] = Counter()
         for row in rows:
             total.update(row["counts"])
         asked = sum(total[k] for k in ("right", "wrong", "must wait", "waits"))
         cases = [case for row in rows for case in row["doubted"]]
-        for least in (0.9, 0.95, 0.98):
-            taken = [case for case in cases if case[0] >= least and case[2]]
-            false = sum(not case[3] for case in taken)
+        for least in (LIKELY, 0.8, 0.9):
+            taken = [case for case in cases if case[0] >= least]
+            false = sum(not case[2] for case in taken)
+            share = sum(case[2] for case in taken) / max(sum(case[2] for case in cases), 1)
             left = (total["waits"] - len(taken)) / max(asked, 1)
             print(
-                f"| {kind} | {len(rows)} | {asked} | {len(cases)} | {least} | {len(taken)} | {false} | {left:.1%} |"
+                f"| {kind} | {len(rows)} | {asked} | {len(cases)} | {least} | {len(taken)} | {share:.0%} | {false} | {left:.1%} |"
             )
 
 

@@ -22,8 +22,8 @@ BLANK, MINUS, OTHER = 10, 11, 12
 #: A digit, or an emptiness, of at least this confidence is taken; what is below goes to a person (docs/scans.md: how often it errs).
 CONFIDENT = 0.995
 
-#: A number whose digits are read with at least this confidence is taken if it is the right answer of its variant.
-LIKELY = 0.9
+#: A doubted number is taken if it is a right answer of its variant with at least this probability.
+LIKELY = 0.8
 
 #: What the net sees: a box of 7 mm by 9 mm at 4 px/mm, and a rim of two pixels.
 HEIGHT, WIDTH, RIM = 36, 28, 2
@@ -50,9 +50,18 @@ def read_digits(cells: NDArray[np.uint8]) -> tuple[NDArray[np.int64], NDArray[np
         Shape ``(n,)`` each. A confidence is the calibrated probability that the box holds this digit, or nothing;
         it is low where the box holds something else: a letter, a struck-out digit, two digits, a part of one.
     """
+    return read_candidates(cells)[:2]
+
+
+def read_candidates(
+    cells: NDArray[np.uint8],
+) -> tuple[NDArray[np.int64], NDArray[np.float64], NDArray[np.float64]]:
+    """Return the digit in each box and its confidence, as :func:`read_digits` does, and the probability of each digit
+    from 0 to 9, shape ``(n, 10)``."""
     chances = probabilities(prepared(cells))
     likeliest = chances[:, : BLANK + 1].argmax(axis=1)
-    return np.where(likeliest == BLANK, EMPTY, likeliest), chances[np.arange(len(likeliest)), likeliest]
+    confidences = chances[np.arange(len(likeliest)), likeliest]
+    return np.where(likeliest == BLANK, EMPTY, likeliest), confidences, chances[:, :BLANK]
 
 
 def read_signs(cells: NDArray[np.uint8]) -> tuple[NDArray[np.bool_], NDArray[np.float64]]:
@@ -69,8 +78,8 @@ def prepared(cells: NDArray[np.uint8]) -> Floats:
     """Return boxes as input of the network: darkness relative to the paper, 0 to 1, on the scale of the
     darkest ink; shape (n, 40, 32)."""
     seen = np.zeros((len(cells), HEIGHT + 2 * RIM, WIDTH + 2 * RIM), np.float32)
-    for cell, index in zip(cells, seen, strict=True):
-        index[RIM:-RIM, RIM:-RIM] = _darkness(_resized(cell))
+    if len(cells):
+        seen[:, RIM:-RIM, RIM:-RIM] = _darkness(np.stack([_resized(cell) for cell in cells]))
     return seen
 
 
@@ -93,12 +102,13 @@ def _resized(cell: NDArray[np.uint8]) -> Floats:
 
 
 def _darkness(grey: Floats) -> Floats:
-    """Return the darkness relative to the paper, on the scale of the darkest ink inside; ink fainter than a
-    quarter stays faint."""
-    paper = max(float(np.percentile(grey, 90)), 1.0)
+    """Return the darkness of boxes relative to their paper, each on the scale of the darkest ink inside; ink fainter
+    than a quarter stays faint."""
+    paper = np.maximum(np.percentile(grey, 90, axis=(1, 2), keepdims=True), 1.0)
     dark = np.clip(1 - grey / paper, 0, 1)
-    ink = float(np.percentile(dark[OUTLINE:-OUTLINE, OUTLINE:-OUTLINE], 98))
-    scaled: Floats = np.minimum(dark / max(ink, 0.25), 1).astype(np.float32)
+    inside = dark[:, OUTLINE:-OUTLINE, OUTLINE:-OUTLINE]
+    ink = np.percentile(inside, 98, axis=(1, 2), keepdims=True)
+    scaled: Floats = np.minimum(dark / np.maximum(ink, 0.25), 1).astype(np.float32)
     return scaled
 
 

@@ -8,8 +8,11 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from hashlib import sha256
+from itertools import islice, product
+from math import prod
 from typing import Any, NamedTuple, Protocol, TypeAlias
 
+from coursework.scanning.digits import LIKELY
 from coursework.scanning.scan_store import ANSWERS, LOST, OTHER_NAME, PageScan, Scanned, ScannedField
 from coursework.scanning.typed import NAME, PAGE, Typed
 
@@ -18,6 +21,7 @@ DRAWN = "drawn"  #: coordinates were left blank, and something is drawn
 NOBODY = "nobody"  #: why a paper without a name waits
 CODE = "code"  #: why a page waits of which the code cannot be read
 DOUBTED = "doubted"  #: why a number waits whose digits are read with less confidence than is asked
+_READINGS = 100  #: of a doubted answer, that are compared with the right one
 
 
 class FieldPosition(NamedTuple):
@@ -235,23 +239,44 @@ def _gather_paper(
 def _confirmed(
     combined: Gathered, part: Part, settled: Sequence[_Settled | AnswerCard | None], parts: Parts
 ) -> Sequence[_Settled | AnswerCard | None]:
-    """Return the pieces of an answer as settled if some are doubted and together they are the right answer of this
-    variant: that a misreading hits it is rarer than that a sure digit is wrong (docs/scans.md)."""
+    """Return the pieces of an answer as settled if some are doubted and it is probably a right answer of this variant:
+    that somebody wrote a wrong one which may be read so is rarer than that a sure digit is wrong (docs/scans.md)."""
     doubted = [item for item in settled if isinstance(item, AnswerCard)]
-    if not doubted or not all(card.waits == DOUBTED for card in doubted):
+    if not doubted or None in settled or not all(card.waits == DOUBTED for card in doubted):
         return settled
-    taken = [
-        _Settled(item.candidate, item.pages) if isinstance(item, AnswerCard) else item for item in settled
-    ]
-    texts = [item.text for item in taken if item is not None]
-    if len(texts) < len(taken):
-        return settled
-    if not parts.is_right(part, texts[0] if len(texts) == 1 else parts.joined(part, texts)):
+    right = _right_readings(part, [_candidates(item) for item in settled if item is not None], parts)
+    if sum(chance for _, chance in right) < LIKELY:
         return settled
     for card in doubted:
         for page in card.pages:
             combined.confirmed[page] = combined.confirmed.get(page, 0) + 1
-    return taken
+    texts, _ = max(right, key=lambda reading: reading[1])
+    return [
+        _Settled(text, item.pages) if isinstance(item, AnswerCard) else item
+        for text, item in zip(texts, settled, strict=True)
+    ]
+
+
+def _candidates(item: _Settled | AnswerCard) -> Sequence[tuple[str, float]]:
+    """Return what a piece of an answer may say, with probabilities."""
+    if isinstance(item, _Settled):
+        return [(item.text, 1.0)]
+    fields = [s.field for s in item.said if s.field.confidence == item.confidence]
+    return next(
+        (field.candidates for field in fields if field.candidates), [(item.candidate, item.confidence)]
+    )
+
+
+def _right_readings(
+    part: Part, candidates: Sequence[Sequence[tuple[str, float]]], parts: Parts
+) -> list[tuple[tuple[str, ...], float]]:
+    """Return the readings of an answer's pieces that are right, with their probabilities."""
+    found = []
+    for pieces in islice(product(*candidates), _READINGS):
+        texts = tuple(text for text, _ in pieces)
+        if parts.is_right(part, texts[0] if len(texts) == 1 else parts.joined(part, texts)):
+            found.append((texts, prod(chance for _, chance in pieces)))
+    return found
 
 
 def _note_drawing(combined: Gathered, paper: PrintedPaper, readings: Sequence[FieldReading]) -> None:

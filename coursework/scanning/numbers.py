@@ -6,14 +6,14 @@ The rules, for a row that is not empty:
 - the digits before the comma stand together, at the start of their boxes or at its end, none missing between;
 - the decimals stand together from the comma on, and only after a digit before it;
 - nothing runs through a box from above it to below, as the edge of a shadow does;
-- a one between digits does not lean as the bar of a fraction does;
+- a one between digits does not lean as the bar of a fraction does, unless the number is the right answer;
 - a sign is one level stroke, and stands before digits; so does that of the power; a power stands after digits;
 - the unit is said where its box is ticked.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -33,14 +33,19 @@ from coursework.scanning.strokes import (
 from coursework.scanning.ticks import EMPTY, TICKED, UNSURE, tick
 from coursework.sheets.answer_pages import AnswerField, Box
 
-#: Pictures of boxes ``(n, h, w)``, dark ink on light, to digits, -1 for an empty one, and the confidence in each.
-Reader = Callable[[np.ndarray], tuple[np.ndarray, np.ndarray]]
+#: Pictures of boxes ``(n, h, w)``, dark ink on light, to digits, -1 for an empty one, the confidence in each, and if the
+#: reader can tell, the probability of each digit from 0 to 9, ``(n, 10)``.
+Reader = Callable[[np.ndarray], tuple[np.ndarray, ...]]
 
 LEAST = CONFIDENT  #: the confidence in a box below which a person reads it
 _DASH, _UPRIGHT = 1.1, 2.0  #: mm, the least length of a minus sign, and of a stroke of a digit
 _THIN, _LEAN = 0.15, 16.0  #: of a fraction's bar: its breadth to its length, and degrees from upright
 _LIKE_EDGES = (1, 7)  #: digits for which the edge of a stain may be taken
 _CELL = (90, 70)  #: pixels of a box that is handed to the reader
+_POSSIBLE, _CANDIDATES = (
+    0.01,
+    24,
+)  #: least probability of a digit, and number of texts, that a doubted number may be
 
 
 @dataclass(frozen=True)
@@ -48,13 +53,24 @@ class FieldText:
     """Reading of a field: its ``text``, the least ``confidence`` of its boxes, the reason for which it waits
     for a person, if any, and the ticked ``cases``.
 
-    The text of what waits is what it looks like, for a person to confirm.
+    The text of what waits is what it looks like, for a person to confirm. If only the confidence is too low,
+    ``candidates`` are the texts that it may be, the likeliest first, with their probabilities.
     """
 
     text: str
     confidence: float = 1.0
     waits: str = ""
     cases: tuple[str, ...] = ()
+    candidates: tuple[tuple[str, float], ...] = ()
+
+
+@dataclass(frozen=True)
+class _Read:
+    """One box as read: its digit, -1 for an empty one, the confidence in it, and the digits that it may be."""
+
+    digit: int = -1
+    confidence: float = 1.0
+    possible: tuple[tuple[int, float], ...] = ((-1, 1.0),)
 
 
 @dataclass(frozen=True)
@@ -82,7 +98,9 @@ def number(page: Straight, field: AnswerField, reader: Reader, least: float = LE
         read = FieldText("", 1.0, "" if unit in (EMPTY, TICKED) else "unit")
     else:
         read = _written(page, field, reader, least, bare, unit)
-    return read if read.waits or not written_beside(page, field) else replace(read, waits="free")
+    if read.waits not in ("", "doubted") or not written_beside(page, field):
+        return read
+    return replace(read, waits="free", candidates=())
 
 
 def _is_bare(page: Straight, box: Box, stroke: float) -> bool:
@@ -95,44 +113,67 @@ def _written(
 ) -> FieldText:
     """Return the reading of a row that is not empty."""
     rows = [[*field.digits, *field.decimals], list(field.power)]
-    texts: dict[Box, tuple[int, float]] = {}
+    boxes: dict[Box, _Read] = {}
     reason = "digit" if any(runs_through(page, box) for box, empty in bare.items() if not empty) else ""
+    has_bar = False
     for row in rows:
         if row:
             pictures, across = cells(page, row)
             read = _digits(pictures, [bare[b] for b in row], reader)
-            reason = reason or across or ("digit" if _has_bar(pictures, [digit for digit, _ in read]) else "")
-            texts |= zip(row, read, strict=True)
+            reason = reason or across
+            has_bar = has_bar or _has_bar(pictures, [one.digit for one in read])
+            boxes |= zip(row, read, strict=True)
     if not reason and any(
-        digit in _LIKE_EDGES and cuts_a_corner(page, box)
-        for box, (digit, _) in texts.items()
-        if not bare[box]
+        one.digit in _LIKE_EDGES and cuts_a_corner(page, box) for box, one in boxes.items() if not bare[box]
     ):
         reason = "digit"
     signs = [_sign(page, box, bare) for box in (field.sign, field.power_sign)]
-    row_read = _Row(
-        tuple(texts[b][0] for b in field.digits),
-        tuple(texts[b][0] for b in field.decimals),
-        tuple(texts[b][0] for b in field.power),
-        signs[0],
-        signs[1],
-        unit,
+    row_read = _row([one.digit for one in boxes.values()], field, (signs[0], signs[1]), unit)
+    confidence = min((one.confidence for one in boxes.values()), default=1.0)
+    reason = reason or _against_rules(row_read)
+    if reason or (confidence >= least and not has_bar):
+        return FieldText(_text(row_read, field.unit_text), confidence, reason)
+    candidates = tuple(
+        (_text(_row(digits, field, (signs[0], signs[1]), unit), field.unit_text), chance)
+        for digits, chance in _likeliest([one.possible for one in boxes.values()])
     )
-    confidence = min((c for _, c in texts.values()), default=1.0)
-    reason = reason or ("digit" if confidence < min(least, LIKELY) else "") or _against_rules(row_read)
-    reason = reason or ("doubted" if confidence < least else "")
-    return FieldText(_text(row_read, field.unit_text), confidence, reason)
+    if sum(chance for _, chance in candidates) < LIKELY:
+        return FieldText(_text(row_read, field.unit_text), confidence, "digit")
+    return FieldText(_text(row_read, field.unit_text), confidence, "doubted", (), candidates)
 
 
-def _digits(pictures: Sequence[np.ndarray], bare: Sequence[bool], reader: Reader) -> list[tuple[int, float]]:
-    """Each box's digit, -1 for an empty one, and the confidence in it: none in a box that is neither."""
-    digits = [(-1, 1.0)] * len(bare)
+def _row(digits: Sequence[int], field: AnswerField, signs: tuple[str, str], unit: str) -> _Row:
+    """Return a row of which the digits, the decimals and the power are read one after the other."""
+    point, end = len(field.digits), len(field.digits) + len(field.decimals)
+    return _Row(tuple(digits[:point]), tuple(digits[point:end]), tuple(digits[end:]), *signs, unit)
+
+
+def _likeliest(
+    possible: Iterable[Sequence[tuple[int, float]]],
+) -> list[tuple[tuple[int, ...], float]]:
+    """Return what boxes may say together, the likeliest first, with its probability."""
+    found: list[tuple[tuple[int, ...], float]] = [((), 1.0)]
+    for one in possible:
+        longer = [((*digits, digit), before * chance) for digits, before in found for digit, chance in one]
+        found = sorted(longer, key=lambda each: -each[1])[:_CANDIDATES]
+    return found
+
+
+def _digits(pictures: Sequence[np.ndarray], bare: Sequence[bool], reader: Reader) -> list[_Read]:
+    """Return each box as read; what is neither bare nor a digit is read with no confidence."""
+    found = [_Read()] * len(bare)
     inked = [k for k, empty in enumerate(bare) if not empty]
     if inked:
-        read, sure = reader(np.stack([_framed(pictures[k]) for k in inked]))
-        for k, digit, c in zip(inked, read, sure, strict=True):
-            digits[k] = int(digit), float(c) if digit >= 0 else 0.0
-    return digits
+        read, sure, *chances = reader(np.stack([_framed(pictures[k]) for k in inked]))
+        for place, k in enumerate(inked):
+            digit, confidence = int(read[place]), float(sure[place])
+            possible = list(enumerate(chances[0][place].tolist())) if chances else [(digit, confidence)]
+            found[k] = _Read(
+                digit,
+                confidence if digit >= 0 else 0.0,
+                tuple(each for each in possible if each[1] >= _POSSIBLE) if digit >= 0 else (),
+            )
+    return found
 
 
 def _has_bar(pictures: Sequence[np.ndarray], digits: Sequence[int]) -> bool:

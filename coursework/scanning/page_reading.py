@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
 from functools import cached_property, lru_cache
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -131,7 +132,7 @@ def _read(
     path: Path, number: int, name: str, papers: Papers, least: float
 ) -> tuple[PageScan, dict[str, bytes]]:
     """Return the result of a page, and its pictures by their files."""
-    from coursework.scanning.digits import read_digits
+    from coursework.scanning.digits import read_candidates
     from coursework.scanning.pages import read_page
     from coursework.scanning.pictures import opencv, picture_at
 
@@ -140,7 +141,7 @@ def _read(
     except CourseworkError as fault:
         return PageScan(REFUSED, as_message(fault), has_picture=False, least=least), {}
     try:
-        page_read = read_page(picture, papers, read_digits, least)
+        page_read = read_page(picture, papers, read_candidates, least)
     except opencv().error as fault:  # one picture does not stop a pile: a person looks at it
         reason: str = Message("reading it failed: {problem}", problem=str(fault.err or fault)[:100])
         return PageScan(LOST, reason, least=least), {picture_of(name): _jpeg(picture.grey, _HIGHEST)}
@@ -166,7 +167,9 @@ def _read(
             crop = crop_of(name, index)
             pictures[crop] = _png(field.crop)
         text = _text(field.field, field.text, field.cases, papers, code)
-        fields.append(_scanned_field(field.field, text, float(field.confidence), field.waits, crop))
+        scanned = _scanned_field(field.field, text, float(field.confidence), field.waits, crop)
+        candidates = tuple((text, round(chance, 6)) for text, chance in field.candidates)
+        fields.append(replace(scanned, candidates=candidates))
     look = look_of(page_read.grey)
     return PageScan(
         ANSWERS, "", code, page_read.page.number, tuple(fields), True, least=least, look=look

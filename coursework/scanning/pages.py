@@ -36,8 +36,8 @@ WAITS = (
 class FieldRead:
     """Reading of one field: its ``text`` (empty for a blank answer) and the least ``confidence`` of its
     boxes. If a person must look, ``waits`` is the key of the reason (of :data:`WAITS`), ``crop`` is the
-    picture, grey, 10 pixels per mm, and the text is only the likeliest reading. ``cases`` are the ticked
-    choices."""
+    picture, grey, 10 pixels per mm, and the text is only the likeliest reading; ``candidates`` are what a doubted
+    number may be, with probabilities. ``cases`` are the ticked choices."""
 
     field: AnswerField
     text: str
@@ -45,6 +45,7 @@ class FieldRead:
     waits: str = ""
     cases: tuple[str, ...] = ()
     crop: np.ndarray | None = None
+    candidates: tuple[tuple[str, float], ...] = ()
 
 
 @dataclass(frozen=True)
@@ -127,7 +128,7 @@ def read_field(page: Straight, field: AnswerField, reader: Reader, least: float 
     else:
         ticks = FieldText("", waits="" if is_bare(page, field.whole, 1.2) else field.what)
     crop = cropped(page, field) if ticks.waits else None
-    return FieldRead(field, ticks.text, ticks.confidence, ticks.waits, ticks.cases, crop)
+    return FieldRead(field, ticks.text, ticks.confidence, ticks.waits, ticks.cases, crop, ticks.candidates)
 
 
 def _ticks(page: Straight, field: AnswerField) -> FieldText:

@@ -50,6 +50,7 @@ class ScannedField:
     waits: str  #: why a person must look; empty where none must
     crop: str  #: file of its own picture, below the folder of the job; empty where none was cut
     box: tuple[float, float, float, float]  #: x, y, width, height on the page, mm
+    candidates: tuple[tuple[str, float], ...] = ()  #: what a doubted number may be, with probabilities
 
 
 @dataclass(frozen=True)
@@ -106,13 +107,16 @@ def page_of(content: Mapping[str, Any]) -> PageScan | None:
     try:
         if fields_left.pop("format") != FORMAT:
             return None
-        fields = tuple(
-            _checked(ScannedField(**{**entry, "box": _box(entry["box"])}))
-            for entry in fields_left.pop("fields")
-        )
+        fields = tuple(_field(entry) for entry in fields_left.pop("fields"))
         return _checked(PageScan(**fields_left, fields=fields))
     except (ValueError, KeyError, TypeError):
         return None
+
+
+def _field(entry: Mapping[str, Any]) -> ScannedField:
+    given = {"candidates": (), **entry}
+    candidates = tuple((str(text), float(chance)) for text, chance in given["candidates"])
+    return _checked(ScannedField(**{**given, "box": _box(given["box"]), "candidates": candidates}))
 
 
 def _box(numbers: Any) -> tuple[float, float, float, float]:

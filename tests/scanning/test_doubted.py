@@ -2,12 +2,23 @@
 
 from __future__ import annotations
 
+import json
+from dataclasses import replace
+
 import pytest
 
 from coursework import open_course
 from coursework.scanning.gathering import FieldPosition, PrintedField, PrintedPaper, gather
 from coursework.scanning.parts import Joins
-from coursework.scanning.scan_store import ANSWERS, PageScan, Scanned, ScannedField, ScannedFile
+from coursework.scanning.scan_store import (
+    ANSWERS,
+    PageScan,
+    Scanned,
+    ScannedField,
+    ScannedFile,
+    page_as_json,
+    page_of,
+)
 
 CODE, FILE = "ABC", ScannedFile("a.png", "f" * 8, 1)
 
@@ -28,12 +39,12 @@ class Paper:
 
 
 def gathered(variant, part, *fields):
-    """What comes of the fields of a part: text, confidence and why each waits."""
+    """What comes of the fields of a part: text, confidence, why each waits, and what else it may be."""
     key = variant.exercise.name, variant.seed, part
     count = len(fields)
     scanned = tuple(
-        ScannedField(*key, k, count, "number", text, confidence, waits, "", (0, 0, 1, 1))
-        for k, (text, confidence, waits) in enumerate(fields)
+        ScannedField(*key, k, count, "number", text, confidence, waits, "", (0, 0, 1, 1), *candidates)
+        for k, (text, confidence, waits, *candidates) in enumerate(fields)
     )
     asked = tuple(PrintedField(FieldPosition(*key, k), count, "number", 1) for k in range(count))
     printed = {CODE: PrintedPaper(CODE, "Zoé", 1, asked)}
@@ -66,6 +77,22 @@ def test_a_doubted_number_counts_where_it_is_right_alone(variant):
     assert found["right"].confirmed == {"page-1": 1}
 
 
+def test_a_doubted_number_counts_where_it_is_probably_one_of_the_right_ones(variant):
+    value = float(variant.key.reference["rA"])
+    right, other, wrong = f"{value:.1f}", f"{value:.0f}", f"{value + 20:.1f}"
+    told = {
+        "each is right": ([(other, 0.5), (right, 0.3)], [other]),
+        "the right one is likelier": ([(right, 0.85), (wrong, 0.14)], [right]),
+        "the likeliest is wrong": ([(wrong, 0.5), (right, 0.49)], []),
+        "none is likely": ([(right, 0.4), (other, 0.2)], []),
+    }
+    found = {
+        name: [a.answer for a in gathered(variant, "rA", (may[0][0], may[0][1], "doubted", may)).answers]
+        for name, (may, _) in told.items()
+    }
+    assert found == {name: answers for name, (_, answers) in told.items()}
+
+
 def test_coordinates_count_where_all_together_are_right():
     variant = open_course()["joint_twist"].variant(1, "en")
     first, *others = (f"{v:.0f}" for v in variant.key.reference["V_plane"])
@@ -73,3 +100,15 @@ def test_coordinates_count_where_all_together_are_right():
     assert len(gathered(variant, "V_plane", (first, 0.99, "doubted"), *sure).answers) == 1
     assert len(gathered(variant, "V_plane", (f"{first}1", 0.99, "doubted"), *sure).cards) == 1
     assert len(gathered(variant, "V_plane", (first, 0.99, "doubted"), *sure[:-1], ("9", 1.0, "")).cards) == 1
+
+
+def test_what_a_number_may_be_is_kept():
+    field = ScannedField("a", 1, "b", 0, 1, "number", "1.5", 0.8, "doubted", "", (0, 0, 1, 1))
+    for candidates in ((), (("1.5", 0.8), ("1.3", 0.15))):
+        page = PageScan(ANSWERS, "", CODE, 1, (replace(field, candidates=candidates),), True)
+        stored = json.loads(json.dumps(page_as_json(page)))
+        assert page_of(stored) == page
+        stored["fields"][0]["candidates"] = [5]
+        assert page_of(stored) is None
+        del stored["fields"][0]["candidates"]  # of a page that was read before
+        assert page_of(stored).fields == (field,)
