@@ -118,6 +118,17 @@ def joints(radii, shade="white"):
     return [part for p, r in radii for part in (disc(p, r, shade), disc(p, 0.35 * r, "black"))]
 
 
+def enlarged(elements, factor):
+    """Parts and notes in another unit of length."""
+    return [replace(e, **{f.name: _times(getattr(e, f.name), factor) for f in fields(e)}) for e in elements]
+
+
+def _times(value, factor):
+    if isinstance(value, (complex, float)) and not isinstance(value, bool):
+        return value * factor
+    return tuple(z * factor for z in value) if isinstance(value, tuple) else value
+
+
 # ------------------------------------------------------------------ a machine beside its scheme
 
 

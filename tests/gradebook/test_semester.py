@@ -102,7 +102,6 @@ def test_what_cannot_be_averaged_is_refused(year, capsys):
         assert run(["semester", wrong]) == 2
 
 
-
 def test_an_assignment_may_be_called_as_a_state_is(year, capsys):
     named = f"absent, provisional={year / 'midterm'}"
     assert run(["semester", named, "--out", str(year / "s.csv")]) == 1

@@ -10,7 +10,11 @@ import pytest
 from coursework.course.lessons import lesson_file
 from coursework.language.words import languages
 
-LESSONS = {"real_machines_levers": 4}  #: and the machines of each
+LESSONS = {
+    "real_machines_levers": 4,
+    "real_machines_paths": 4,
+    "real_machines_strokes": 4,
+}  #: and the machines of each
 TURN = np.radians(np.arange(0.0, 360.0, 0.25))
 
 
@@ -83,7 +87,116 @@ def crane():
     yield "crane_torque crane_plain", (0.1 * abs(np.gradient(P.imag, luffed)).max(), 0.1 * P.real.max())
 
 
-FOUND = {"real_machines_levers": levers}
+def swept(wave):
+    """How far an angle swings, degrees."""
+    return np.degrees(np.ptp(np.unwrap(wave)))
+
+
+def paths():
+    """Claw, pusher and toy by Pythagoras, the pump by the law of its inversion."""
+    A, C = 8 * np.exp(1j * TURN), -22.9 + 11.2j
+    B = joined(A, C, 18.2, 16.4, -1)
+    P = A + (B - A) / 18.2 * 16 * np.exp(-1j * np.radians(70))
+    holds = P[P.real > P.real.max() - 1.3]
+    share = len(holds) / len(P)
+    yield "claw_r2 claw_r3 claw_r4 claw_AP claw_depth", (8, 18.2, 16.4, 16, 1.3)
+    yield "claw_pitch claw_share", (np.ptp(holds.imag), 100 * share)
+    yield "claw_moves claw_stands", (1000 * share / 24, 1000 * (1 - share) / 24)
+    P = hoecken(TURN)
+    level = hoecken(np.radians(np.linspace(80, 280, 801)))
+    steady = np.radians(np.linspace(105, 255, 601))
+    speed = abs(np.gradient(hoecken(steady).real, steady, edge_order=2))
+    yield "pusher_r2 pusher_r1 pusher_r3 pusher_AP pusher_share", (50, 100, 125, 250, 100 * 200 / 360)
+    yield "pusher_length pusher_off", (np.ptp(level.real), np.ptp(level.imag))
+    yield "pusher_lift pusher_speed", (np.ptp(P.imag), 100 * (1 - speed.min() / speed.max()))
+    A = 150 + 150 * np.exp(1j * np.radians(np.linspace(-45, 45, 361)))
+    P = (500**2 - 230**2) / A.conjugate()
+    half = np.arccos(abs(P - A) / 2 / 230)  # of the rhombus, at P
+    crossed = np.degrees(np.minimum(2 * half, np.pi - 2 * half)).min()
+    yield "pump_r2 pump_a pump_b pump_product", (150, 500, 230, 0.5**2 - 0.23**2)
+    yield "pump_line pump_stroke pump_swing pump_least", (P.real.mean(), np.ptp(P.imag), 90, crossed)
+    yield from toy()
+
+
+def hoecken(theta):
+    A = 50 * np.exp(1j * theta)
+    return 2 * joined(A, 100.0, 125, 125, 1) - A
+
+
+def corner(beside, other, opposite):
+    """The angle of a triangle between two sides, radians."""
+    return np.arccos((beside**2 + other**2 - opposite**2) / (2 * beside * other))
+
+
+def toy():
+    C, B, D = 15 * np.exp(1j * TURN), -38.8 - 12.5j, -14.6 + 41.9j
+    H = joined(C, B, 38.8, 23.7, -1)
+    # The plate CHF is turned from CH by the angle at C; the leg FEG from EF by the angle at E.
+    F = C + (H - C) / 38.8 * 73.4 * np.exp(1j * corner(38.8, 73.4, 35.2))
+    E = joined(F, D, 57.7, 34.1, 1)
+    G = E + (F - E) / 57.7 * 111.7 * np.exp(1j * corner(57.7, 111.7, 59))
+    bears = G[G.imag < G.imag.min() + 3]
+    yield "toy_r2 toy_tread toy_share", (15, 3, 100 * len(bears) / len(G))
+    yield "toy_stride toy_lift toy_width", (np.ptp(bears.real), np.ptp(G.imag), np.ptp(G.real))
+    yield "toy_rocker", (swept(np.angle(H - B)),)
+
+
+def strokes():
+    """The shaper by its triangle, the needle by its sine, the engine by its toggle, the cross by its closed forms."""
+    A = 250j + 100 * np.exp(1j * TURN)
+    D = 560 * A / abs(A)
+    x = D.real - np.sqrt(180**2 - (D.imag - 480) ** 2)
+    cut = (np.degrees(TURN[x.argmin()] - TURN[x.argmax()])) % 360
+    speed = 6 * np.gradient(np.append(x, x[:2]), TURN[1] - TURN[0])[1:-1] / 1000
+    yield "shaper_r1 shaper_r5 shaper_r6 shaper_h shaper_r2 shaper_speed", (250, 560, 180, 480, 100, 6)
+    yield "shaper_swing shaper_stroke", (2 * np.degrees(np.arcsin(0.4)), np.ptp(x))
+    yield "shaper_cut shaper_Q", (cut, (90 + np.degrees(np.arcsin(0.4))) / (90 - np.degrees(np.arcsin(0.4))))
+    yield "shaper_forward shaper_back", (-speed.min(), speed.max())
+    yield from needle()
+    yield from engine()
+    yield from cross()
+
+
+def needle():
+    down = -15.5 * np.sin(TURN) + np.sqrt(48**2 - (15.5 * np.cos(TURN)) ** 2)
+    speed = 100 * np.gradient(np.append(down, down[:2]), TURN[1] - TURN[0])[1:-1] / 1000
+    F, G = 12 * np.exp(1j * (TURN + np.radians(38))), -24 + 17j
+    D = joined(F, G, 20.5, 27, -1)
+    eye = (F + (D - F) / 20.5 * 74 * np.exp(1j * np.radians(41))).imag
+    least, most, low = (np.degrees(TURN[k]) for k in (eye.argmin(), eye.argmax(), down.argmax()))
+    yield "needle_r2 needle_r3 needle_OF needle_stroke", (15.5, 48, 12, 31)
+    yield "needle_turns needle_share", (100 * 30 / np.pi, 100 * np.mean(-down - 68 < -116))
+    yield "needle_speed", (abs(speed).max(),)
+    yield "needle_low needle_high", (155 * (1 + 15.5 / 48), 155 * (1 - 15.5 / 48))
+    yield "eye_lift eye_late eye_rise", (np.ptp(eye), (least - low) % 360, (most - least) % 360)
+
+
+def engine():
+    C = -106.5 + 187.7j
+    A = 88.5 * np.exp(1j * TURN)
+    B = joined(A, C, 200, 120, -1)
+    swung = np.angle(B - C)
+    drawn_back = [
+        120 * np.cos(a) + np.sqrt(200**2 - (120 * np.sin(a)) ** 2) for a in (swung.max(), swung.min())
+    ]
+    full, part = sorted((320 - x for x in drawn_back), reverse=True)
+    yield "engine_r2 engine_r3 engine_r4 engine_r5 engine_strokes", (88.5, 200, 120, 200, 4)
+    yield "engine_swing engine_long engine_short", (swept(swung), full, part)
+    yield "engine_ratio engine_least_mu", (full / part, acute(B - A, B - C))
+
+
+def cross():
+    ratio = np.sqrt(0.5)
+    theta = np.radians(np.linspace(-45, 45, 3601))
+    omega = ratio * (np.cos(theta) - ratio) / (1 - 2 * ratio * np.cos(theta) + ratio**2)
+    alpha = np.gradient(omega, theta, edge_order=2)
+    yield "cross_r1 cross_r2 cross_frames cross_teeth cross_pitch", (40, 40 * ratio, 24, 16, 4.75)
+    yield "cross_film cross_share cross_moves cross_stands", (19, 25, 250 / 24, 750 / 24)
+    yield "cross_fast cross_entry cross_peak", (ratio / (1 - ratio), 1, abs(alpha).max())
+    yield "cross_film_speed", (ratio / (1 - ratio) * 24 * 16 * 4.75 / 1000,)
+
+
+FOUND = {"real_machines_levers": levers, "real_machines_paths": paths, "real_machines_strokes": strokes}
 
 
 @pytest.mark.parametrize("lesson", LESSONS)
