@@ -6,8 +6,10 @@ from functools import cache
 import numpy as np
 
 import coursework
+from coursework.authoring.linkage_files import LINKAGES
 from coursework.degrees import polar
 from coursework.figures import Figure, angle_mark, disc, line, note, shape
+from coursework.linkages.compiled import compiled
 
 from ._panels import moved
 
@@ -50,6 +52,13 @@ def scheme(name, **changed):
         e for e in elements if not isinstance(e, angle_mark) and not (isinstance(e, line) and e.dashed)
     ]
     return elements, {e.label.replace("_", ""): e.p for e in elements if hasattr(e, "toward") and e.label}
+
+
+def counted(name):
+    """The number of moving bodies of a mechanism and that of its lower pairs, a jack taken for two bodies and a slide."""
+    linkage = compiled(LINKAGES / "exercises" / f"{name}.toml").linkage
+    bodies = len(linkage.bodies) + bool(linkage.drive.rod)
+    return bodies, (3 * bodies - linkage.mobility) // 2
 
 
 def swing(angles):
@@ -119,14 +128,37 @@ def joints(radii, shade="white"):
 
 
 def enlarged(elements, factor):
-    """Parts and notes in another unit of length."""
-    return [replace(e, **{f.name: _times(getattr(e, f.name), factor) for f in fields(e)}) for e in elements]
+    """Parts and schemes in another unit of length."""
+    return [
+        replace(e, **{f.name: _times(getattr(e, f.name), f.name, factor) for f in fields(e)})
+        for e in elements
+    ]
 
 
-def _times(value, factor):
-    if isinstance(value, (complex, float)) and not isinstance(value, bool):
+def _times(value, name, factor):
+    if isinstance(value, complex) or (name == "radius" and value is not None):
         return value * factor
-    return tuple(z * factor for z in value) if isinstance(value, tuple) else value
+    if isinstance(value, tuple) and all(isinstance(z, complex) for z in value):
+        return tuple(z * factor for z in value)
+    return value
+
+
+def unlettered(elements):
+    """Elements without any name."""
+    return [replace(e, label=None) if hasattr(e, "label") else e for e in elements]
+
+
+def rows_of(drawings, across, room):
+    """Drawings of one size, in rows, a letter under each; ``room`` is that of one of them."""
+    found = []
+    for k, elements in enumerate(drawings):
+        low, high = _extent(elements)
+        factor = min(room.real / max((high - low).real, 1e-9), room.imag / max((high - low).imag, 1e-9))
+        corner = complex(1.25 * room.real * (k % across), -1.5 * room.imag * (k // across))
+        middle = corner + complex(room.real / 2, room.imag / 2)
+        found += moved(enlarged(elements, factor), middle - factor * (low + high) / 2)
+        found.append(note(middle - 0.68j * room.imag, f"({'abcdefgh'[k]})"))
+    return found
 
 
 # ------------------------------------------------------------------ a machine beside its scheme

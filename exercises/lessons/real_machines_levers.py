@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from coursework.degrees import polar
 from coursework.figures import disc, note, shape, trace
 
 from ._machines import (
@@ -265,7 +266,20 @@ def values():
         **given("wiper", "windscreen_wiper", "r2", "r3", "r4", "CD"),
         **given("bus", "bus_wiper", "r2", "r3", "r4", "L", "b"),
     }
-    return {**sizes, **_wiper(), **_bus(), **_tipper(), **_crane()}
+    return {**sizes, **_wiper(), **_bus(), **_tipper(), **_crane(), **_rear()}
+
+
+def _rear():
+    """The wiper of the last question: a swing of 110 degrees in equal times."""
+    r1, r4 = 150.0, 50.0
+    r2 = r4 * float(polar(1.0, 55.0).imag)
+    r3 = (r1**2 + r2**2 - r4**2) ** 0.5
+    found = solved("windscreen_wiper", ("theta3", "theta4"), theta2=FINE, r2=r2, r3=r3, r4=r4, xC=-r1)
+    return {
+        "design_r2": f"{r2:.1f}",
+        "design_r3": f"{r3:.1f}",
+        "design_mu": f"{crossing(found['theta3'], found['theta4']).min():.0f}",
+    }
 
 
 def _wiper():

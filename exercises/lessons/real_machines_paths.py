@@ -230,6 +230,8 @@ def _pusher():
     speed = abs(solved("hoecken", "v_P_x", theta2=STEADY, r2=RAKE))
     return {
         "pusher_r2": f"{RAKE:.0f}",
+        "design_r2": f"{300 * RAKE / np.ptp(level.real):.1f}",
+        "design_off": f"{300 * np.ptp(level.imag) / np.ptp(level.real):.2f}",
         "pusher_r1": f"{2 * RAKE:.0f}",
         "pusher_r3": f"{2.5 * RAKE:.0f}",
         "pusher_AP": f"{5 * RAKE:.0f}",

@@ -3,13 +3,14 @@
 import numpy as np
 
 from coursework.degrees import polar
-from coursework.figures import disc, note, shape, trace
+from coursework.figures import Figure, disc, note, shape, trace
 
 from ._machines import (
     FINE,
     beside,
     box,
     capsule,
+    counted,
     crossing,
     data,
     given,
@@ -17,9 +18,11 @@ from ._machines import (
     open_line,
     path,
     poly,
+    rows_of,
     scheme,
     solved,
     swing,
+    unlettered,
 )
 
 # ------------------------------------------------------------------ shaper
@@ -270,19 +273,53 @@ def _sprocket(centre, turned):
     ]
 
 
+# ------------------------------------------------------------------ schemes to be named
+
+#: What is shown without a name: the mechanism, and what is given instead of what its variant draws.
+NAMELESS = (
+    ("inverted_slider_crank", {}),
+    ("toggle", {}),
+    ("scotch_yoke", {}),
+    ("digger_arm", {}),
+    ("shaper", {"r2": 90.0, "theta2": 60.0}),
+    ("class_three", {}),
+    ("jansen_leg", {}),
+    ("peaucellier", {"theta2": 25.0}),
+)
+
+
+def to_be_named():
+    """Eight schemes without a name."""
+    drawings = [unlettered(scheme(name, **changed)[0]) for name, changed in NAMELESS]
+    return Figure(*rows_of(drawings, 4, 100 + 90j), paper_mm=(165, 105))
+
+
 # ------------------------------------------------------------------ numbers
 
 
 def values():
     """The numbers that the lesson's text states, as they are printed."""
-    return {**_shaper(), **_needle(), **_engine(), **_cross()}
+    return {**_shaper(), **_needle(), **_engine(), **_cross(), **_named()}
+
+
+def _named():
+    """How many bodies move in a scheme without a name, and how many lower pairs join them."""
+    found = {}
+    for letter, (name, _) in zip("abcdefgh", NAMELESS, strict=True):
+        bodies, pairs = counted(name)
+        found |= {f"{letter}_bodies": f"{bodies}", f"{letter}_pairs": f"{pairs}"}
+    return found
 
 
 def _shaper():
     found = solved("shaper", ("theta4", "xE", "v_E_x"), theta2=FINE, **SHAPER)
     x = found["xE"]
     cut = (FINE[x.argmin()] - FINE[x.argmax()]) % 360
+    wished = solved("shaper", "xE", theta2=FINE, r2=125.0, r5=450.0, h=400.0)
+    slow = (FINE[wished.argmin()] - FINE[wished.argmax()]) % 360
     return {
+        "design_Q": f"{slow / (360 - slow):.2f}",
+        "design_stroke": f"{np.ptp(wished):.0f}",
         **given("shaper", "shaper", "r1", "r5", "r6", "h"),
         "shaper_r2": f"{SHAPER['r2']:.0f}",
         "shaper_speed": f"{SHAPER['omega2']:.0f}",

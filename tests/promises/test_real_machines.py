@@ -7,8 +7,11 @@ import re
 import numpy as np
 import pytest
 
+from coursework.authoring.linkage_files import LINKAGES
 from coursework.course.lessons import lesson_file
 from coursework.language.words import languages
+from coursework.linkages.compiled import compiled
+from coursework.structure.assour import roman
 
 LESSONS = {
     "real_machines_levers": 4,
@@ -54,6 +57,11 @@ def levers():
     yield "bus_area", (0.52 * np.ptp(E.real) / 1000,)
     yield from lorry()
     yield from crane()
+    # With equal times the least angle has the cosine (r1 / r3) sin 55 degrees.
+    r2 = 50 * np.sin(np.radians(55))
+    r3 = np.sqrt(150**2 + r2**2 - 50**2)
+    mu = np.degrees(np.arccos(150 / r3 * np.sin(np.radians(55))))
+    yield "design_r2 design_r3 design_mu", (r2, r3, mu)
 
 
 def lorry():
@@ -108,6 +116,8 @@ def paths():
     speed = abs(np.gradient(hoecken(steady).real, steady, edge_order=2))
     yield "pusher_r2 pusher_r1 pusher_r3 pusher_AP pusher_share", (50, 100, 125, 250, 100 * 200 / 360)
     yield "pusher_length pusher_off", (np.ptp(level.real), np.ptp(level.imag))
+    grown = 300 / np.ptp(level.real)
+    yield "design_r2 design_off", (50 * grown, np.ptp(level.imag) * grown)
     yield "pusher_lift pusher_speed", (np.ptp(P.imag), 100 * (1 - speed.min() / speed.max()))
     A = 150 + 150 * np.exp(1j * np.radians(np.linspace(-45, 45, 361)))
     P = (500**2 - 230**2) / A.conjugate()
@@ -152,9 +162,15 @@ def strokes():
     yield "shaper_swing shaper_stroke", (2 * np.degrees(np.arcsin(0.4)), np.ptp(x))
     yield "shaper_cut shaper_Q", (cut, (90 + np.degrees(np.arcsin(0.4))) / (90 - np.degrees(np.arcsin(0.4))))
     yield "shaper_forward shaper_back", (-speed.min(), speed.max())
+    yield "design_Q design_stroke", (2, 450)
     yield from needle()
     yield from engine()
     yield from cross()
+    # Each scheme of the figure, counted by hand: a jack is two bodies and a slide.
+    for letter, bodies, pairs in zip(
+        "abcdefgh", (3, 3, 3, 5, 5, 5, 7, 7), (4, 4, 4, 7, 7, 7, 10, 10), strict=True
+    ):
+        yield f"{letter}_bodies {letter}_pairs", (bodies, pairs)
 
 
 def needle():
@@ -209,6 +225,15 @@ def test_each_number_of_a_machine_is_found_again_without_the_solver(course, less
     # A value at the edge between two roundings may fall on either side.
     wrong = {n: (t, v) for n, (t, v) in wrong.items() if abs(float(t) - v) > 0.51 * 10.0 ** -digits[n]}
     assert wrong == {}
+
+
+def test_the_classes_of_the_schemes_without_a_name_are_those_of_their_groups(course):
+    name = "real_machines_strokes"
+    schemes = [name for name, _ in course.folder.lesson_module(name).NAMELESS]
+    right = [roman(compiled(LINKAGES / "exercises" / f"{scheme}.toml").formulas.rank) for scheme in schemes]
+    for lang in languages():
+        text = lesson_file(course.folder, name, lang).read_text("utf-8")
+        assert re.findall(r"^\| \([a-h]\) .* (I+) \|$", text, re.MULTILINE) == right, lang
 
 
 @pytest.mark.parametrize("lesson", LESSONS)
