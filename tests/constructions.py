@@ -73,10 +73,7 @@ def acceleration_polygon_slotted(hand):
     _crank_turning_steadily(hand, "O2A")
     _lever(hand, "O4A", "a", "k", "n", "b", given["omega4"], given["rA_dot"], given["rA"])
     _measure(hand, bk="bk", nb_t="nb")
-    return {
-        "alpha4": hand.rate("n", "b", "O4A", given["rA"]),
-        "rA_ddot": _along(hand, "b", "k", "O4A"),
-    }
+    return {"alpha4": hand.rate("n", "b", "O4A", given["rA"]), "rA_ddot": _along(hand, "b", "k", "O4A")}
 
 
 def acceleration_polygon_six_bar(hand):
@@ -179,10 +176,7 @@ def havens_construction(hand):
     of_I = hand.crossing(start + across * ((of_B2 - start).conjugate() * square).imag / slope)
     _arrow(hand, "v30", start, of_I)
     hand.at |= {"s": start, "foot": foot, "I": of_I}
-    return {
-        "omega4": hand.rate("s", "foot", "O4A1", O4A),
-        "omega3": hand.rate("s", "I", "O1A1", given["r3"]),
-    }
+    return {"omega4": hand.rate("s", "foot", "O4A1", O4A), "omega3": hand.rate("s", "I", "O1A1", given["r3"])}
 
 
 # --------------------------------------------------------------------------- steps

@@ -19,13 +19,6 @@ def allowed(page):
     (policy,) = re.findall(r'<meta http-equiv="Content-Security-Policy" content="([^"]*)">', page)
     rules = dict(rule.strip().split(" ", 1) for rule in policy.split(";"))
     assert rules["default-src"] == "'none'"
-    assert set(rules) == {
-        "default-src",
-        "img-src",
-        "style-src",
-        "script-src",
-        "base-uri",
-        "form-action",
-    }
+    assert set(rules) == {"default-src", "img-src", "style-src", "script-src", "base-uri", "form-action"}
     assert rules["img-src"] == "data:"
     return [one.strip("'") for one in rules["script-src"].split() if one != "'none'"]

@@ -14,15 +14,7 @@ from coursework.accuracy.conditioning import unavoidable
 from coursework.accuracy.hard_places import GROWING, VANISHING, HardPlace
 from coursework.accuracy.motion import motion_rows
 from coursework.accuracy.reference import ClosureResidual
-from coursework.accuracy.subject import (
-    MOTION,
-    WHATS,
-    Places,
-    Subject,
-    numbers_of,
-    one_by_one,
-    together,
-)
+from coursework.accuracy.subject import MOTION, WHATS, Places, Subject, numbers_of, one_by_one, together
 from coursework.accuracy.timing import Times, interleaved
 from coursework.accuracy.ways import ComputingMethod, Values, ways
 from coursework.course.exercise import CourseExercise

@@ -10,13 +10,7 @@ from typing import Any
 
 from coursework.accuracy.conditioning import ALLOWED, unavoidable
 from coursework.accuracy.hard_places import GROWING, VANISHING, HardPlace
-from coursework.accuracy.measuring import (
-    checked,
-    compare,
-    needs_mpmath,
-    right_values,
-    usual_sizes,
-)
+from coursework.accuracy.measuring import checked, compare, needs_mpmath, right_values, usual_sizes
 from coursework.accuracy.reference import twinned
 from coursework.accuracy.subject import Places, Subject, numbers_of, one_by_one, together
 from coursework.accuracy.timing import Times, interleaved

@@ -103,15 +103,7 @@ def _motion(title: str, rows: Sequence[Measurement], texts: Words) -> ReportSect
 
 
 def _motion_table(rows: Sequence[Measurement], where: str, texts: Words) -> ReportTable:
-    lines = [
-        (
-            _method(r, texts),
-            number(r.median * 1e-9),
-            _spread(r),
-            number(_measured(r)),
-        )
-        for r in rows
-    ]
+    lines = [(_method(r, texts), number(r.median * 1e-9), _spread(r), number(_measured(r))) for r in rows]
     heads = texts["method"], texts["duration_head"], texts["spread_head"], texts["error_head"].format(where)
     return ReportTable(heads, tuple(lines), (False, True, True, True), where)
 

@@ -9,11 +9,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 RESIDUAL = 1e-9  #: largest relative residual of the governing equations
-USUAL = (
-    "usual errors told",
-    "usual errors told otherwise",
-    "usual errors among many",
-)
+USUAL = ("usual errors told", "usual errors told otherwise", "usual errors among many")
 KEPT_DIGITS = (3, 4, 5)  #: of simulated students who round at every step
 
 

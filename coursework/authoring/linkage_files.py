@@ -169,10 +169,7 @@ def report(exercise: CourseExercise[Any], made: CompiledLinkage, seed: int) -> l
         else:
             own = " mm"
         rows.append(
-            (
-                Message("{name} over the motion", name=name),
-                f"{along.min():.4g}{own} … {along.max():.4g}{own}",
-            )
+            (Message("{name} over the motion", name=name), f"{along.min():.4g}{own} … {along.max():.4g}{own}")
         )
     return [{"property": name, "value": value} for name, value in rows]
 

@@ -81,9 +81,7 @@ def _several(name: str, metavar: str, **more: Any) -> Callable[[Any], Any]:
 )
 @click.option("--cards", is_flag=True, help="List the answers that wait, question by question.")
 @click.option(
-    "--undo",
-    is_flag=True,
-    help="Take the last of these decisions back; with --put-away what was put away.",
+    "--undo", is_flag=True, help="Take the last of these decisions back; with --put-away what was put away."
 )
 @click.option("--why", default="", help="Reason, kept with the decision.")
 @click.option("--by", default="", help="Who decides; by default the account that runs the command.")

@@ -267,10 +267,7 @@ def _roster(settings: BuildSettings, notes: list[str]) -> list[Student]:
 
 
 def _issued_exercises(
-    course: Course,
-    names: Sequence[str],
-    settings: BuildSettings,
-    before: Mapping[str, Any] | None,
+    course: Course, names: Sequence[str], settings: BuildSettings, before: Mapping[str, Any] | None
 ) -> AssignedVariants:
     """Issue exercises, each on a paper of its own; or repeat what was issued, with papers of who makes up."""
     from coursework.issuing.issued import Issued

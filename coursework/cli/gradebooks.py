@@ -8,11 +8,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from coursework.cli.options import (
-    DONE,
-    FOUND,
-    FilePath,
-)
+from coursework.cli.options import DONE, FOUND, FilePath
 from coursework.cli.printing import say, warn
 from coursework.errors import BadInput, counted
 from coursework.messages import Message

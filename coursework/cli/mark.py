@@ -332,12 +332,7 @@ def _grade_standing(
 
 
 def _told_standing(book: Gradebook, marks: Path, out: Path) -> int:
-    say(
-        "{marks} taken from {source}; see {out}",
-        marks=counted(book.rows_in, "mark"),
-        source=marks,
-        out=out,
-    )
+    say("{marks} taken from {source}; see {out}", marks=counted(book.rows_in, "mark"), source=marks, out=out)
     if book.changes:
         say(
             "{count} mark was changed by hand; see {file}"

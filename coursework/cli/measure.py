@@ -9,14 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from coursework.cli.options import (
-    FilePath,
-    exercises_argument,
-    json_option,
-    lang_option,
-    opened,
-    writes,
-)
+from coursework.cli.options import FilePath, exercises_argument, json_option, lang_option, opened, writes
 from coursework.cli.printing import print_json, say
 from coursework.errors import counted
 from coursework.messages import Message, localised

@@ -7,13 +7,7 @@ from pathlib import Path
 
 import click
 
-from coursework.cli.options import (
-    FilePath,
-    json_option,
-    lang_option,
-    opened,
-    print_notes,
-)
+from coursework.cli.options import FilePath, json_option, lang_option, opened, print_notes
 from coursework.cli.printing import print_json
 from coursework.errors import BadInput
 

@@ -147,11 +147,7 @@ class CourseExercise(Generic[V]):
         return frozenset(driver_angles.union(*(loop.angles for loop in self.solution.loops.values())))
 
     def solve(
-        self,
-        *,
-        only: Sequence[str] | str | None = None,
-        effects: Iterable[str] | None = None,
-        **given: Any,
+        self, *, only: Sequence[str] | str | None = None, effects: Iterable[str] | None = None, **given: Any
     ) -> dict[str, Any]:
         """Quantities from given values, in canonical units (degrees for angles).
 

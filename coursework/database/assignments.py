@@ -354,11 +354,7 @@ def _issued_item(row: Any, record: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def issued_of(
-    connection: Connection,
-    number: int,
-    person_id: int | None = None,
-    *,
-    student: str | None = None,
+    connection: Connection, number: int, person_id: int | None = None, *, student: str | None = None
 ) -> Issued:
     """Return the issued variants to mark against, of one person alone if given."""
     content = issued_content(connection, number, person_id, student=student)

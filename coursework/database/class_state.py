@@ -9,12 +9,7 @@ from hashlib import sha256
 from typing import Any, TypeVar
 
 from coursework.course.course import Course
-from coursework.database.instructor_queries import (
-    AssignmentOverview,
-    Placing,
-    SiteSubmissions,
-    Stamp,
-)
+from coursework.database.instructor_queries import AssignmentOverview, Placing, SiteSubmissions, Stamp
 from coursework.errors import closest
 from coursework.gradebook.book import Gradebook, Result, Sitting, results
 from coursework.gradebook.class_marking import rejecting

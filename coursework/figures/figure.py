@@ -108,10 +108,7 @@ class Figure:
     bounded: bool  #: whether the author told ``paper_mm``
 
     def __init__(
-        self,
-        *elements: Element,
-        paper_mm: tuple[float, float] | None = None,
-        scale: float | None = None,
+        self, *elements: Element, paper_mm: tuple[float, float] | None = None, scale: float | None = None
     ) -> None:
         for element in elements:
             if not isinstance(element, Element):

@@ -105,12 +105,7 @@ class History:
     """
 
     def __init__(
-        self,
-        folder: Path,
-        day: str,
-        renamed: Callable[[str], str] = str,
-        *,
-        is_adjusted: bool = False,
+        self, folder: Path, day: str, renamed: Callable[[str], str] = str, *, is_adjusted: bool = False
     ) -> None:
         self._is_adjusted = is_adjusted
         path, summary = folder / "changes.csv", folder / "summary.csv"

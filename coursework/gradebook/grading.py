@@ -274,10 +274,7 @@ def _write_decisions(
     if replaced is not None and (lost := files.lost):
         copy = free_name(replaced)
         write_whole(copy, replaced.read_bytes())
-        book.warnings += [
-            *lost,
-            Message("the earlier {file} is now {copy}", file=replaced.name, copy=copy),
-        ]
+        book.warnings += [*lost, Message("the earlier {file} is now {copy}", file=replaced.name, copy=copy)]
     if files.path is not None and (rows or replaced is not None):
         table = tables.open(files.path.name, files.columns)
         for row in rows:

@@ -111,10 +111,7 @@ def sheet_of_row(issued: Issued, row: AnswerRow) -> tuple[str, str, int]:
     )
     if (row.exercise, seed) not in issued.records:
         raise UnplacedError(
-            "seed {seed} of {exercise} was not issued{hint}",
-            seed=seed,
-            exercise=row.exercise,
-            hint=theirs,
+            "seed {seed} of {exercise} was not issued{hint}", seed=seed, exercise=row.exercise, hint=theirs
         )
     if row.origin is not None:
         _check_version(issued.records[row.exercise, seed], row.origin.version)

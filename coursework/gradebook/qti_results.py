@@ -50,8 +50,7 @@ def read_results(data: bytes, source: str) -> Iterator[AnswerRow | Rejected | Pl
         yield Rejected(
             source,
             Message(
-                "no answers: an XML file must be {what}, an assessmentResult with itemResult in it",
-                what=WHAT,
+                "no answers: an XML file must be {what}, an assessmentResult with itemResult in it", what=WHAT
             ),
         )
 

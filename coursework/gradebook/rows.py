@@ -50,11 +50,7 @@ class AnswerRow(NamedTuple):
 
 #: English place of an answer in a file. A file of a million rows states one in each: as a message each would cost more.
 _PLACE = re.compile(r"(?P<file>.*), (?P<unit>line|row|item) (?P<number>\d+)", re.DOTALL)
-_UNITS = {
-    "line": "{file}, line {line}",
-    "row": "{file}, row {line}",
-    "item": "{file}, item {line}",
-}
+_UNITS = {"line": "{file}, line {line}", "row": "{file}, row {line}", "item": "{file}, item {line}"}
 
 
 @dataclass(frozen=True)

@@ -106,24 +106,14 @@ def rise(law: Any, u: Any) -> tuple[Any, Any, Any, Any]:
         u, left
     )  # the second half of each lift is its first one, turned: there no digit is lost near the end
     laws = {
-        "parabolic": (
-            2.0 * low**2,
-            4.0 * np.minimum(u, left),
-            4.0 * np.sign(odd),
-            0.0 * u,
-        ),
+        "parabolic": (2.0 * low**2, 4.0 * np.minimum(u, left), 4.0 * np.sign(odd), 0.0 * u),
         "harmonic": (
             sin(90.0 * low) ** 2,
             pi / 2.0 * sin(half),
             pi**2 / 2.0 * cos(half),
             -(pi**3) / 2.0 * sin(half),
         ),
-        "cycloidal": (
-            _cycloidal(low),
-            2.0 * sin(half) ** 2,
-            2.0 * pi * sin(turn),
-            4.0 * pi**2 * cos(turn),
-        ),
+        "cycloidal": (_cycloidal(low), 2.0 * sin(half) ** 2, 2.0 * pi * sin(turn), 4.0 * pi**2 * cos(turn)),
         "polynomial_345": (rise_345(low)[0], *rise_345(u)[1:], 60.0 - 360.0 * both),
         "polynomial_4567": (
             low**4 * (35.0 - 84.0 * low + 70.0 * low**2 - 20.0 * low**3),

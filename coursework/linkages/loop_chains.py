@@ -5,10 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 
-from coursework.linkages.entries import (
-    GROUND,
-    SlideEntry,
-)
+from coursework.linkages.entries import GROUND, SlideEntry
 from coursework.linkages.groups import Dyad, Group
 from coursework.linkages.points import Chain, PointWriter, local_plane
 from coursework.linkages.terms import Heading, Sum

@@ -410,8 +410,7 @@ def _echo(columns: Sequence[Reading | None], which: int, order: Sequence[int]) -
 
 _GREEK = "alpha|beta|gamma|delta|epsilon|zeta|eta|theta|iota|kappa|lambda|mu|nu|xi|omicron|pi|rho|sigma|tau|upsilon|phi|chi|psi|o?mega"
 _NONE = re.compile(
-    r"0|∅|(?:none|nothing|zero|null?|nulle?|aucune?|rien|z[ée]ro|tout(?:es)?\s+nulle?s)\.?",
-    re.I,
+    r"0|∅|(?:none|nothing|zero|null?|nulle?|aucune?|rien|z[ée]ro|tout(?:es)?\s+nulle?s)\.?", re.I
 )
 _ZERO = re.compile(r"[+-]?0+(?:[.,]0*)?|(?:zero|z[ée]ro|nulle?|null|nil|none|no|non)", re.I)
 _FREE = re.compile(

@@ -30,11 +30,7 @@ _DIGITS = 6  #: of the right number that a player may show
 #: Letters that a box of a number takes: a comma or a unit is refused as it is typed, and never marked as something else.
 _MASK = "[0-9.eE+-]*"
 #: Visible width of a box in characters, and its class in players and in the style sheet.
-_WIDTHS = {
-    "usual": (10, "qti-input-width-10"),
-    "wide": (20, "qti-input-width-20"),
-    "line": (72, "line"),
-}
+_WIDTHS = {"usual": (10, "qti-input-width-10"), "wide": (20, "qti-input-width-20"), "line": (72, "line")}
 _LINES = 4  #: of a box of several lines, by default
 
 

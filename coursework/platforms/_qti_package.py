@@ -49,8 +49,7 @@ def files(pool: Pool, spelling: QtiSpelling) -> Iterator[tuple[str, bytes | Pack
 def _test(pool: Pool) -> Element:
     """Return the test: one section per exercise, from which a student gets one item."""
     root = Element(
-        "assessmentTest",
-        {"identifier": _named(pool, "test"), "title": pool.title, "toolName": "coursework"},
+        "assessmentTest", {"identifier": _named(pool, "test"), "title": pool.title, "toolName": "coursework"}
     )
     for name, value in (("SCORE", 0.0), ("MAXSCORE", pool.points)):
         declared = add(root, "outcomeDeclaration", identifier=name, cardinality="single", baseType="float")

@@ -72,12 +72,7 @@ def pool_content(drawn: DrawnPool, students: Sequence[Student]) -> dict[str, Any
     give them."""
     content = issued_content(drawn.issues, drawn.assignment, drawn.secret)
     columns = {student.name: dict(student.columns) for student in students}
-    return {
-        **content,
-        "roster": bool(students),
-        "pool": True,
-        **({"students": columns} if columns else {}),
-    }
+    return {**content, "roster": bool(students), "pool": True, **({"students": columns} if columns else {})}
 
 
 def steps(platform: str, lang: str) -> str:

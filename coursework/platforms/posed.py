@@ -239,11 +239,7 @@ def _turned(interval: Interval, part: Part) -> Iterator[Interval]:
     for turns in _TURNS if part.sort.turn else (0,):
         by = turns * part.sort.turn
         yield replace(
-            interval,
-            low=interval.low + by,
-            high=interval.high + by,
-            value=interval.value + by,
-            turns=turns,
+            interval, low=interval.low + by, high=interval.high + by, value=interval.value + by, turns=turns
         )
 
 

@@ -13,14 +13,7 @@ from xml.etree import ElementTree as ET
 from coursework.language.words import words
 from coursework.platforms._maxima import number, text
 from coursework.platforms._stack_following import following
-from coursework.platforms._stack_trees import (
-    EMPTY,
-    Tree,
-    case_name,
-    functions,
-    right_cases,
-    trees,
-)
+from coursework.platforms._stack_trees import EMPTY, Tree, case_name, functions, right_cases, trees
 from coursework.platforms._stack_trials import Trial, trials
 from coursework.platforms._xml import below, inner_bytes
 from coursework.platforms.items import Item, Loss, Pool

@@ -289,11 +289,7 @@ class Graph:
         return self._plans[key]
 
     def _resolve(
-        self,
-        wanted: tuple[str, ...],
-        given: frozenset[str],
-        effects: frozenset[str],
-        result: frozenset[str],
+        self, wanted: tuple[str, ...], given: frozenset[str], effects: frozenset[str], result: frozenset[str]
     ) -> _Plan:
         for effect in effects:
             if effect not in self._effects:

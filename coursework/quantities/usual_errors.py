@@ -160,8 +160,7 @@ class _Changes:
             if not _is_sum(factor):
                 yield _of_factor(factor), factor, _quotient(above, below[:index] + below[index + 1 :])
         yield from self._inside(
-            [*above, *below],
-            lambda changed: _quotient(changed[: len(above)], changed[len(above) :]),
+            [*above, *below], lambda changed: _quotient(changed[: len(above)], changed[len(above) :])
         )
 
     # ----------------------------------------------------------------- functions

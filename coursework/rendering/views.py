@@ -17,15 +17,7 @@ from coursework.markup.formula_tree import LETTERS, tokens
 from coursework.markup.formulas import quantity_formula
 from coursework.markup.line import to_line
 from coursework.markup.markdown import to_text
-from coursework.sheets.sheet import (
-    Answer,
-    AnswerSheet,
-    FeedbackSheet,
-    GivenValue,
-    Handout,
-    Question,
-    Step,
-)
+from coursework.sheets.sheet import Answer, AnswerSheet, FeedbackSheet, GivenValue, Handout, Question, Step
 
 if TYPE_CHECKING:
     from coursework.figures import Beginning, Figure, Picture

@@ -151,10 +151,7 @@ class Parts(Protocol):
 
 
 def gather(
-    pages: Iterable[Scanned],
-    papers: Mapping[str, PrintedPaper],
-    typed: Iterable[Typed],
-    parts: Parts,
+    pages: Iterable[Scanned], papers: Mapping[str, PrintedPaper], typed: Iterable[Typed], parts: Parts
 ) -> Gathered:
     """Combine pages and typed texts."""
     combined = Gathered()

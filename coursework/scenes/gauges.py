@@ -49,13 +49,7 @@ def gauges(reel: Reel, vectors: Sequence[Vectors]) -> tuple[Gauge, ...]:
         given = {**reel.variant.used, **posed}
         results = exercise.solve(**given, only=tuple(effects_of), effects=())
     text = [
-        _gauge(
-            reel,
-            exercise.solution_symbol(name),
-            exercise.units.get(name, "1"),
-            effects_of[name],
-            value,
-        )
+        _gauge(reel, exercise.solution_symbol(name), exercise.units.get(name, "1"), effects_of[name], value)
         for name, value in results.items()
     ]
     known_values = {gauge.symbol for gauge in text}

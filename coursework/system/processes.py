@@ -35,10 +35,7 @@ _LAST = 19  #: niceness of background work
 _MOST = 61  #: limit of processes that some systems can wait for
 _PATIENCE = 3.0  #: seconds for processes to clean up
 _LOOK = 0.3  #: seconds between two checks of a supervised process
-_AGAIN, _LONGEST = (
-    0.5,
-    30.0,
-)  #: seconds before a restart; the wait doubles with each failure
+_AGAIN, _LONGEST = (0.5, 30.0)  #: seconds before a restart; the wait doubles with each failure
 _STEADY = 10.0  #: seconds after which a running process counts as sound
 
 

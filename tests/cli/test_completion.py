@@ -34,8 +34,7 @@ def test_commands_are_completed(completed):
 
 
 @pytest.mark.parametrize(
-    "command",
-    ["show", "solve", "variant", "simulate", "animate", "build", "check", "notebook", "accuracy"],
+    "command", ["show", "solve", "variant", "simulate", "animate", "build", "check", "notebook", "accuracy"]
 )
 def test_exercises_are_completed(completed, course, command):
     assert completed(f"coursework {command} ") == list(course.names)

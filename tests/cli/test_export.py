@@ -58,8 +58,7 @@ def test_a_larger_pool_takes_the_place_of_a_smaller_and_the_same_keeps_its_bytes
 
 
 @pytest.mark.parametrize(
-    ("platform", "exercise", "said"),
-    [("moodel", "grashof", "moodle"), ("moodle", "grasshof", "grashof")],
+    ("platform", "exercise", "said"), [("moodel", "grashof", "moodle"), ("moodle", "grasshof", "grashof")]
 )
 def test_a_name_that_is_none_is_answered_with_the_nearest(cli, tmp_path, platform, exercise, said):
     status, _, err = export(cli, tmp_path / "out", exercise, platform=platform)

@@ -10,11 +10,7 @@ from figure_samples import SAMPLES, every_sample, slotted
 from tables import each_row
 
 from coursework.errors import WrongValue
-from coursework.figures import (
-    Figure,
-    link,
-    pin,
-)
+from coursework.figures import Figure, link, pin
 from coursework.figures.text import LetterRun, advance, read
 
 

@@ -239,10 +239,7 @@ def guide_at(d, r, angle):
             arm,
             (w, v),
             (turn, slide),
-            (
-                (j_ - 3 * slide * w - 3 * v * turn + arm * w**3) / arm,
-                j + 3 * arm * w * turn + 3 * v * w**2,
-            ),
+            ((j_ - 3 * slide * w - 3 * v * turn + arm * w**3) / arm, j + 3 * arm * w * turn + 3 * v * w**2),
         )
 
 

@@ -15,11 +15,7 @@ from coursework.errors import BadCourse
 from coursework.language import words as language
 from coursework.language.typography import typeset
 from coursework.language.words import words
-from coursework.markup.markdown import (
-    to_html,
-    to_notebook_markdown,
-    to_typst_markup,
-)
+from coursework.markup.markdown import to_html, to_notebook_markdown, to_typst_markup
 from coursework.rendering.feedback import verdict_word
 from coursework.rendering.views import points_text, tolerances
 

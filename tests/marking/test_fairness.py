@@ -214,10 +214,7 @@ def test_a_small_error_costs_no_more_than_a_large_one(slotted, share):
     right = slotted.solution()
     omega4 = right["omega4"] / share
     wrong = {"rA": right["rA"] * share, "omega4": omega4}
-    follows = {
-        "a_centripetal": -wrong["rA"] * omega4**2,
-        "a_coriolis": 2 * omega4 * right["rA_dot"],
-    }
+    follows = {"a_centripetal": -wrong["rA"] * omega4**2, "a_coriolis": 2 * omega4 * right["rA_dot"]}
     marking = slotted.grade({**wrong, "rA_dot": right["rA_dot"], **follows})
     assert marking["rA"].verdict == "wrong"
     assert {marking[i].verdict for i in ("omega4", *follows)} <= {"correct", "follow_through"}

@@ -402,11 +402,7 @@ def test_what_may_be_written_for_a_choice_is_said_in_the_language_of_the_sheet_a
     [
         ("rA", "douze virgule", "« douze virgule »"),
         ("rA", "12.5.8", "« 12.5.8 »"),
-        (
-            "rA",
-            "la\nlongueur qui est dessinée sur la figure",
-            "« la longueur qui est dessinée sur la fig… »",
-        ),
+        ("rA", "la\nlongueur qui est dessinée sur la figure", "« la longueur qui est dessinée sur la fig… »"),
         ("rA", "12 parsecs", "« parsecs »"),
     ],
 )

@@ -49,10 +49,7 @@ def test_an_acceleration_without_its_normal_part_is_right_on_no_variant():
     assert "slip:term" in told
 
 
-@each_row(
-    ("lang", "said"),
-    [("en", "the term ω₄⁴ is left out"), ("fr", "le terme ω₄⁴ manque")],
-)
+@each_row(("lang", "said"), [("en", "the term ω₄⁴ is left out"), ("fr", "le terme ω₄⁴ manque")])
 def test_the_sentence_names_the_term_and_not_the_value(lang, said):
     (variant,) = distinct_variants(COURSE["four_bar_motion"], 0, 1, lang, parts=("a_B",))
     right = variant.quantities(["alpha4", "a_B"])

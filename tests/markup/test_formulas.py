@@ -18,9 +18,7 @@ from coursework.markup.formula_tree import GRIDS, MACROS
 from coursework.markup.formulas import check_formula, number_text
 from coursework.markup.latex import to_notebook
 from coursework.markup.line import to_line
-from coursework.markup.markdown import (
-    to_html,
-)
+from coursework.markup.markdown import to_html
 from coursework.markup.mathml import to_mathml
 from coursework.markup.spoken import spoken
 from coursework.markup.typst import to_typst

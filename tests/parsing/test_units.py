@@ -128,14 +128,7 @@ def test_another_dimension_is_refused_with_both_named(a, b):
     assert repr(b) in str(error.value)
 
 
-@each_row(
-    ("text", "piece", "offer"),
-    [
-        ("MM", "MM", "'mm'"),
-        ("Kg", "Kg", "'kg'"),
-        ("tr/mn", "mn", "'m"),
-    ],
-)
+@each_row(("text", "piece", "offer"), [("MM", "MM", "'mm'"), ("Kg", "Kg", "'kg'"), ("tr/mn", "mn", "'m")])
 def test_an_unknown_unit_names_its_piece_and_the_nearest(text, piece, offer):
     with pytest.raises(UnknownUnit) as error:
         parse_unit(text)

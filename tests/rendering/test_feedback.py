@@ -301,12 +301,7 @@ def test_what_was_read_is_told_where_it_is_not_what_was_typed(typed, read, shown
 
 ASKED = tuple(q for q in feedback_sheet("en").handout.questions if q.id in ("rA", "theta4"))
 NEXT = Practice(
-    "slotted_mechanism",
-    1,
-    "",
-    57,
-    (Lesson("mechanisms", "One loop", ("7. A block", "8. Coriolis")),),
-    ASKED,
+    "slotted_mechanism", 1, "", 57, (Lesson("mechanisms", "One loop", ("7. A block", "8. Coriolis")),), ASKED
 )
 
 

@@ -96,10 +96,7 @@ def test_numbers_side_by_side_would_be_the_answer_and_are_no_hint():
     variant = next(v for v in variants if "axis_31_point" in v.part_ids)
     assert [
         r"\num{" in text.replace(r"\num{0}", "") for text in hints.steps(variant, "axis_31_point")[1:]
-    ] == [
-        False,
-        False,
-    ]
+    ] == [False, False]
 
 
 def test_hints_come_one_by_one_and_stay(here):

@@ -257,10 +257,7 @@ def test_what_comes_next():
     assert (
         advised(wrong, today, names, lambda name: errors.get(name, ())).exercise,
         advised(wrong, today, names, lambda name: errors.get(name, ())).why,
-    ) == (
-        "z",
-        "skill",
-    )
+    ) == ("z", "skill")
     due = advised(wrong, today + timedelta(days=1), names, lambda name: errors.get(name, ()))
     assert (due.exercise, due.why, due.parts, due.day) == ("x", "due", ("a",), today)
     all_begun = wrong | Progress([answered(0, "a", "correct", exercise=e) for e in ("y", "z")])

@@ -168,11 +168,7 @@ NUMBERS = {
             r"\theta + \num{180}^{\circ} - \frac{a\,\theta}{\num{2}}",
             r"\num{60}^{\circ} + \num{180}^{\circ} - \frac{\num{3} \times \num{60}^{\circ}}{\num{2}}",
         ),
-        (
-            square_to,
-            r"\theta + \num{90}^{\circ}\,a",
-            r"\num{60}^{\circ} + \num{90}^{\circ} \times \num{3}",
-        ),
+        (square_to, r"\theta + \num{90}^{\circ}\,a", r"\num{60}^{\circ} + \num{90}^{\circ} \times \num{3}"),
         (period, r"\frac{\num{2}\,\pi}{\left|a\right|}", r"\frac{\num{2}\,\pi}{\left|\num{3}\right|}"),
         (
             sum_of_vectors,

@@ -6,15 +6,7 @@ from dataclasses import replace
 from datetime import timedelta
 
 import pytest
-from lti_platform import (
-    DEEP,
-    LTI,
-    MEMBER,
-    PLATFORM,
-    SITE,
-    TEACHER,
-    field,
-)
+from lti_platform import DEEP, LTI, MEMBER, PLATFORM, SITE, TEACHER, field
 from site_accounts import PASSWORD, join
 from site_assignments import CLOSES, USUAL
 from site_linked import AT_ONCE_TOLD, Linked

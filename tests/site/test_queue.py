@@ -234,9 +234,7 @@ def test_the_number_that_waits_follows_a_decision_without_a_new_page(desk):
     before = re.search(r'id="waits" class="count">(\d+)<', page.text)[1]
     hidden = {k: field(page, k) or "" for k in ("group", "since", "student")}
     piece = desk.browser(TEACHER).fill(
-        f"/desk/{desk.number}/queue",
-        {**hidden, "all": "1", "do": "refuse"},
-        headers={"hx-request": "true"},
+        f"/desk/{desk.number}/queue", {**hidden, "all": "1", "do": "refuse"}, headers={"hx-request": "true"}
     )
     after = re.search(r'id="waits" class="count" hx-swap-oob="true">(\d+)<', piece.text)[1]
     assert int(after) == int(before) - 2

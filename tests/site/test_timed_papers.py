@@ -10,11 +10,7 @@ from site_linked import AT_ONCE_TOLD, Linked
 from site_people import MAX, TEACHER, ZOE
 
 from coursework.database.people import put_people, set_extra_time
-from coursework.database.publication import (
-    CLOSED,
-    Publication,
-    published,
-)
+from coursework.database.publication import CLOSED, Publication, published
 from coursework.database.submissions import submissions_of
 from coursework.issuing.roster import Student
 from coursework.site.worker import SETTLES, Worker

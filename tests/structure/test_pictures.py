@@ -53,10 +53,7 @@ def test_lines_of_a_graph_cross_seldom():
 
 
 def test_two_joints_of_the_same_bodies_are_two_lines():
-    joints = [
-        {"between": [1, 2], "kind": "revolute"},
-        {"between": [1, 2], "kind": "higher"},
-    ]
+    joints = [{"between": [1, 2], "kind": "revolute"}, {"between": [1, 2], "kind": "higher"}]
     one, other = elements(JointGraph.of(joints), line)
     assert abs(one.p - other.p) > 2
 

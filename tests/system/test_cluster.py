@@ -603,10 +603,7 @@ def test_a_scheduler_that_speaks_tls(tmp_path, load, monkeypatch):
         "security": keys,
         "dashboard_address": "127.0.0.1:0",
     }
-    with (
-        LocalCluster(**started, host="127.0.0.1", protocol="tls") as there,
-        dask.config.set(told),
-    ):
+    with LocalCluster(**started, host="127.0.0.1", protocol="tls") as there, dask.config.set(told):
         assert there.scheduler_address.startswith("tls://")
         with cluster(there.scheduler_address, load):
             assert list(in_turn([Task("", divmod, (7, 2))], 2)) == [(3, 1)]

@@ -147,10 +147,7 @@ def two_bars_v(B: str, A: str, C: str, AB: complex, omega: float, CB: complex, o
     ``i omega AB`` and ``i omega_C CB``.
     """
     a, b = A.lower(), B.lower()
-    return (
-        turning(a, b, f"{B}/{A}", A + B, AB, omega),
-        turning("p_v", b, B, C + B, CB, omega_C),
-    )
+    return (turning(a, b, f"{B}/{A}", A + B, AB, omega), turning("p_v", b, B, C + B, CB, omega_C))
 
 
 def two_bars_a(

@@ -170,9 +170,7 @@ def _text(claims: Mapping[str, Any], name: str, *, needed: bool = False, label: 
     stored = _storable(text)
     if needed and (not text.strip() or stored != text):
         raise LTIRefusal(
-            "claim",
-            400,
-            f"{label or name.rpartition('/')[2]} {'missing' if not text.strip() else 'too odd'}",
+            "claim", 400, f"{label or name.rpartition('/')[2]} {'missing' if not text.strip() else 'too odd'}"
         )
     return stored
 

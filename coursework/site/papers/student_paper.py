@@ -235,11 +235,7 @@ class StudentPaper:
             names = papers.drawing_context(document, env)
         else:
             names = papers.context(document, "html.j2", partial(render, env))
-        return {
-            **names,
-            "image": papers.image,
-            "keeping": "",
-        }
+        return {**names, "image": papers.image, "keeping": ""}
 
 
 def student_paper(

@@ -118,11 +118,7 @@ def shown_mechanism(
     plots = []
     for effect, rows in curves.items():
         panels = [
-            Axis(
-                symbol_of(c.name),
-                unit_text(c.unit, lang),
-                c.values[::_EVERY],
-            )
+            Axis(symbol_of(c.name), unit_text(c.unit, lang), c.values[::_EVERY])
             for c in rows
             if np.isfinite(c.values[::_EVERY]).any()
         ]
@@ -139,11 +135,7 @@ def shown_mechanism(
                 )
             )
     numbers = [
-        (
-            symbol_of(c.name),
-            unit_text(c.unit, lang),
-            localise(significant(now[c.name], 4), lang),
-        )
+        (symbol_of(c.name), unit_text(c.unit, lang), localise(significant(now[c.name], 4), lang))
         for rows in curves.values()
         for c in rows
         if np.isfinite(now[c.name])

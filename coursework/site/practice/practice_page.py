@@ -321,12 +321,6 @@ ROUTES = (
         has_page=False,
         budget=BOXES,
     ),
-    Route(
-        "/practice/{exercise}/{seed}/solution",
-        solution,
-        Permission.OWN,
-        takes_forms=True,
-        budget=PLAIN,
-    ),
+    Route("/practice/{exercise}/{seed}/solution", solution, Permission.OWN, takes_forms=True, budget=PLAIN),
     Route("/practice/{exercise}/{seed}/motion", motion, Permission.OWN),
 )

@@ -6,9 +6,7 @@ import cmath
 import math
 
 import pytest
-from courses_polygons import (
-    COURSE,
-)
+from courses_polygons import COURSE
 from tables import each_row
 
 from coursework.errors import BadCourse, UnknownName

@@ -7,12 +7,7 @@ import math
 import re
 
 import pytest
-from courses_polygons import (
-    COURSE,
-    PLACES,
-    every_language,
-    variants,
-)
+from courses_polygons import COURSE, PLACES, every_language, variants
 from sweeps import sampled
 
 import coursework

@@ -8,14 +8,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from animations import WITH_POINTS, points_at
-from courses_polygons import (
-    COURSE,
-    DRIVES,
-    PLACES,
-    constructions,
-    every_exercise,
-    variants,
-)
+from courses_polygons import COURSE, DRIVES, PLACES, constructions, every_exercise, variants
 
 
 def test_every_exercise_that_asks_a_rate_states_its_polygons():

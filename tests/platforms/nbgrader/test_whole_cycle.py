@@ -260,12 +260,7 @@ def ordinary():
         nbgrader=said | {"grade": True, "locked": True, "solution": False, "grade_id": "test", "points": 2},
     )
     kernel = {"display_name": "Python 3", "language": "python", "name": "python3"}
-    return {
-        "cells": [solution, test],
-        "metadata": {"kernelspec": kernel},
-        "nbformat": 4,
-        "nbformat_minor": 4,
-    }
+    return {"cells": [solution, test], "metadata": {"kernelspec": kernel}, "nbformat": 4, "nbformat_minor": 4}
 
 
 @pytest.fixture(scope="module")
