@@ -63,10 +63,7 @@ def machines(folder, count):
     dask = [sys.executable, "-m", "dask"]
     scheduler = [
         *dask,
-        "scheduler",
-        "--host",
-        "127.0.0.1",
-        "--port",
+        *"scheduler --host 127.0.0.1 --port".split(),
         str(port),
         "--no-dashboard",
         "--no-show",
@@ -75,11 +72,7 @@ def machines(folder, count):
         *dask,
         "worker",
         address,
-        "--nthreads",
-        "1",
-        "--no-dashboard",
-        "--no-nanny",
-        "--local-directory",
+        *"--nthreads 1 --no-dashboard --no-nanny --local-directory".split(),
         str(folder),
     ]
     seldom = {

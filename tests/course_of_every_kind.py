@@ -164,6 +164,24 @@ La réactance emmagasine l'énergie et la rend, pour $X$ = {{ X }}.
 }
 
 
+class Asking:
+    """What a kind asks of a variant, of a reference alone."""
+
+    stated = {}  # noqa: RUF012
+
+    def __init__(self, reference):
+        self.value = reference
+
+    def reference(self, quantity):
+        return self.value
+
+    def labels(self, part):
+        return {}
+
+    def letters(self, part):
+        return {}
+
+
 def write_course(root):
     """Write the course; ``coil`` is its exercise."""
     for folder in ("exercises", "solutions"):

@@ -123,18 +123,7 @@ def test_two_builds_at_once_leave_a_whole_one(small_course, tmp_path, time):
 @pytest.mark.parametrize("time", TIMES)
 def test_two_gradings_at_once_leave_the_marks_of_one(small_course, tmp_path, time):
     assert (
-        run(
-            [
-                "--course",
-                str(small_course),
-                "build",
-                "crank_pin",
-                "--formats",
-                "ipynb",
-                "--out",
-                str(tmp_path),
-            ]
-        )
+        run(["--course", str(small_course), *"build crank_pin --formats ipynb --out".split(), str(tmp_path)])
         == 0
     )
     (record,) = [i["record"] for i in json.loads((tmp_path / "issued.json").read_text())["issued"]]

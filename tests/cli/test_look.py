@@ -63,14 +63,9 @@ def test_variant_with_its_solution_is_json_for_every_kind_of_part(cli, name):
 
 def test_solve_on_ones_own_numbers_in_any_unit(cli):
     arguments = [
-        "--set",
-        "r1=228.6mm",
-        "--set",
+        *"--set r1=228.6mm --set".split(),
         "r2=0.1143 m",
-        "--set",
-        "theta2=135deg",
-        "--only",
-        "rA,theta4",
+        *"--set theta2=135deg --only rA,theta4".split(),
     ]
     status, out, _ = cli("solve", "slotted_mechanism", *arguments, "--json")
     found = json.loads(out)

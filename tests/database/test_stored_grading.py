@@ -279,13 +279,9 @@ def test_a_file_that_cannot_be_marked_at_all_is_not_kept(one, capsys):
 def test_a_longer_roster_adds_and_another_build_is_refused(one, capsys):
     (one.folder / "class.csv").write_text("student,number\nZoé,1\nAna,7\nBen,8\nCléo,9\nDan,10\n", "utf-8")
     job = [
-        "build",
-        "coil",
-        "--roster",
+        *"build coil --roster".split(),
         one.folder / "class.csv",
-        "--formats",
-        "html",
-        "--out",
+        *"--formats html --out".split(),
         one.built,
         "--db",
         one.url,

@@ -36,11 +36,7 @@ def issued(small_course, tmp_path):
             [
                 "--course",
                 str(small_course),
-                "build",
-                "crank_pin",
-                "--formats",
-                "ipynb",
-                "--out",
+                *"build crank_pin --formats ipynb --out".split(),
                 str(tmp_path / "b"),
             ]
         )

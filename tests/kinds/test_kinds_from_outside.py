@@ -147,17 +147,7 @@ def test_it_is_marked_by_its_own_rule(own_course, answer, verdict):
 
 def test_it_is_printed_handed_in_and_marked_by_the_commands(own_course, tmp_path):
     out, marks = tmp_path / "out", tmp_path / "marks"
-    build = [
-        "build",
-        "--variants",
-        "3",
-        "--formats",
-        "pdf,ipynb,html,tex",
-        "--lang",
-        "fr,en",
-        "--out",
-        str(out),
-    ]
+    build = [*"build --variants 3 --formats pdf,ipynb,html,tex --lang fr,en --out".split(), str(out)]
     assert run(["--course", str(own_course), *build]) == 0
     key = json.loads((out / "instructor" / "key.json").read_text("utf-8"))
     assert all(len(record["answers"]["reach"]["value"]) == 2 for record in key)

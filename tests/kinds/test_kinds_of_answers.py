@@ -412,24 +412,7 @@ def test_the_class_of_the_demonstration_answers_them(variant, habit):
 
 
 def test_a_case_is_solved_on_the_command_line(root, capsys):
-    assert (
-        run(
-            [
-                "--course",
-                str(root),
-                "solve",
-                "coil",
-                "--set",
-                "R=30",
-                "--set",
-                "X=40",
-                "--set",
-                "U=100",
-                "--json",
-            ]
-        )
-        == 0
-    )
+    assert run(["--course", str(root), *"solve coil --set R=30 --set X=40 --set U=100 --json".split()]) == 0
     found = json.loads(capsys.readouterr().out)["quantities"]
     assert found["Z"]["value"] == {"re": 30, "im": 40}
     assert found["M"]["value"] == [[30, -40], [40, 30]]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from course_of_every_kind import Asking
 from tables import each_row
 
 from coursework.kinds.kind import kind_of
@@ -18,24 +19,6 @@ TRANSMITS = Part("held", kind="wrench_pattern")
 SPIN = np.array([0.0, 0.0, 5.0, 10.0, 20.0, 0.0])
 PUSH = np.array([10.0, 20.0, 0.0, 0.0, 0.0, 5.0])
 IN_PLANE = np.array([10.0, 20.0, 5.0])
-
-
-class Asking:
-    """What a kind asks of a variant."""
-
-    stated = {}  # noqa: RUF012
-
-    def __init__(self, reference):
-        self.value = reference
-
-    def reference(self, quantity):
-        return self.value
-
-    def labels(self, part):
-        return {}
-
-    def letters(self, part):
-        return {}
 
 
 def read(part, answer, reference):

@@ -35,24 +35,6 @@ def every_kind(tmp_path_factory):
     )
 
 
-class Asking:
-    """What a kind asks of a variant, of a reference alone."""
-
-    stated = {}  # noqa: RUF012
-
-    def __init__(self, reference):
-        self.value = reference
-
-    def reference(self, quantity):
-        return self.value
-
-    def labels(self, part):
-        return {}
-
-    def letters(self, part):
-        return {}
-
-
 def asked(course):
     """Every part of a course that a machine marks, with a variant that asks it; parts that read alike once."""
     seen = set()
@@ -108,7 +90,7 @@ def test_no_other_kind_reads_what_answers_nothing(part, reference):
     found = [
         (text, reading.read_as)
         for text in TEXTS
-        if (reading := part.sort.read(text, part, Asking(reference))).status == "read"
+        if (reading := part.sort.read(text, part, course_of_every_kind.Asking(reference))).status == "read"
     ]
     assert found == []
 

@@ -214,10 +214,7 @@ def test_a_file_without_a_secret_has_one_beside_it_and_goes_on_with_it(tmp_path,
         str(path),
         "--roster",
         str(tmp_path / "class.csv"),
-        "--formats",
-        "ipynb",
-        "--lang",
-        "en",
+        *"--formats ipynb --lang en".split(),
     ]
     assert run([*build, "--out", str(tmp_path / "exam")]) == 0
     kept = tmp_path / "exam" / "issued.json"
@@ -302,10 +299,7 @@ def test_nothing_that_is_handed_out_or_only_marks_holds_the_secret(tmp_path, in_
     build = [
         "build",
         *asked,
-        "--formats",
-        "pdf,ipynb,html,tex,nbgrader",
-        "--with",
-        "scan,booklet,no-polygons",
+        *"--formats pdf,ipynb,html,tex,nbgrader --with scan,booklet,no-polygons".split(),
     ]
     assert run([*build, "--out", str(out)]) == 0
     secret = json.loads((out / "issued.json").read_bytes()).get("secret", HEAD)

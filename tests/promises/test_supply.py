@@ -270,12 +270,7 @@ def test_the_same_sources_give_the_same_wheel(tmp_path):
     for k in range(2):
         build = [
             sys.executable,
-            "-m",
-            "build",
-            "--quiet",
-            "--no-isolation",
-            "--wheel",
-            "--outdir",
+            *"-m build --quiet --no-isolation --wheel --outdir".split(),
             tmp_path / str(k),
         ]
         subprocess.run([*build, ROOT], check=True, timeout=300)

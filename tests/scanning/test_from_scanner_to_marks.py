@@ -35,13 +35,7 @@ def test_from_the_printer_to_the_marks(tmp_path):
                 EXERCISE,
                 "--roster",
                 str(roster),
-                "--with",
-                "scan",
-                "--formats",
-                "pdf",
-                "--lang",
-                "en",
-                "--out",
+                *"--with scan --formats pdf --lang en --out".split(),
                 str(out),
             ]
         )

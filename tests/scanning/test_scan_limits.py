@@ -91,13 +91,7 @@ def built(tmp_path_factory):
     told = [
         "--roster",
         str(folder / "class.csv"),
-        "--with",
-        "scan",
-        "--formats",
-        "pdf",
-        "--lang",
-        "fr",
-        "--out",
+        *"--with scan --formats pdf --lang fr --out".split(),
         str(folder / "out"),
     ]
     assert cli.run(["build", EXERCISE, *told]) == 0

@@ -178,18 +178,7 @@ def test_an_element_that_is_not_always_there_is_left_out():
 
 def test_the_command_writes_both_files(tmp_path, capsys):
     assert (
-        run(
-            [
-                "animate",
-                "slotted_mechanism",
-                "--seed",
-                "3",
-                "--effects",
-                "velocity,coriolis",
-                "--out",
-                str(tmp_path),
-            ]
-        )
+        run([*"animate slotted_mechanism --seed 3 --effects velocity,coriolis --out".split(), str(tmp_path)])
         == 0
     )
     assert {p.name for p in tmp_path.iterdir()} == {"slotted_mechanism.svg", "slotted_mechanism.html"}

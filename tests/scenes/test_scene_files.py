@@ -188,11 +188,7 @@ def test_the_commands_run_a_file(write, tmp_path, capsys):
     assert (
         run(
             [
-                "simulate",
-                "slider_crank_torque",
-                "--effects",
-                "inertia",
-                "--drive",
+                *"simulate slider_crank_torque --effects inertia --drive".split(),
                 "torque=5 Nm",
                 "--duration",
                 "0.1 s",

@@ -99,11 +99,7 @@ def test_misuse_is_told(course):
 
 def test_the_command_writes_table_and_plot(tmp_path, capsys):
     arguments = [
-        "simulate",
-        "slotted_mechanism",
-        "--effects",
-        "velocity",
-        "--set",
+        *"simulate slotted_mechanism --effects velocity --set".split(),
         "r1=0.2286 m",
         "--out",
         str(tmp_path),

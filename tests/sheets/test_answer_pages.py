@@ -8,7 +8,7 @@ from itertools import combinations, pairwise
 
 import numpy as np
 import pytest
-from course_of_every_kind import write_course
+from course_of_every_kind import Asking, write_course
 from tables import each_row
 
 import coursework
@@ -183,16 +183,13 @@ def test_coordinates_are_joined_as_their_kind_reads_them(kind, reference, found,
     sort = kind_of(kind)
     part = coursework.model.Part("x", unit=unit, kind=kind, id="x")
 
-    class Asking:
-        def reference(self, quantity):
-            return reference
-
-    said = sort.from_paper(found, part, Asking(), unit=True)
+    asking = Asking(reference)
+    said = sort.from_paper(found, part, asking, unit=True)
     assert said == answer
-    reading = sort.read(said, part, Asking())
+    reading = sort.read(said, part, asking)
     assert reading.status == "read"
     assert np.allclose(reading.values[0], reference)
-    assert sort.read(sort.from_paper(found, part, Asking()), part, Asking()).status == "read"
+    assert sort.read(sort.from_paper(found, part, asking), part, asking).status == "read"
 
 
 def test_every_newer_kind_has_its_place(tmp_path):

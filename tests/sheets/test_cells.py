@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from course_of_every_kind import write_course
+from course_of_every_kind import Asking, write_course
 from sweeps import whole_course
 from tables import each_row
 
@@ -97,9 +97,5 @@ def test_a_text_of_components_fills_their_boxes_and_another_stays_in_the_line():
 
 @each_row("text", ["1,5; 2,5; 3,5", "(1,5 ; 2,5 ; 3,5)", "vx = 1,5; vy = 2,5; wz = 3,5", "1.5, 2.5, 3.5"])
 def test_three_numbers_with_decimal_commas_are_a_plane_twist(text):
-    class Asking:
-        def reference(self, quantity):
-            return np.ones(3)
-
     part = coursework.model.Part("x", unit="mm/s", kind="twist", id="x")
-    assert kind_of("twist").read(text, part, Asking()).values[0].tolist() == [1.5, 2.5, 3.5]
+    assert kind_of("twist").read(text, part, Asking(np.ones(3))).values[0].tolist() == [1.5, 2.5, 3.5]

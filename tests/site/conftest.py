@@ -2,7 +2,8 @@ import pickle
 
 import pytest
 from argon2 import PasswordHasher
-from site_people import Class
+from site_browser import desk_at, windows
+from site_people import ZOE, Class
 
 from coursework.errors import CourseworkError
 from coursework.site.frame import budgets
@@ -12,6 +13,20 @@ from coursework.site.people import passwords
 @pytest.fixture
 def class_of_three(tmp_path):
     return Class(f"sqlite:///{tmp_path}/site.db")
+
+
+@pytest.fixture(scope="module")
+def desk(tmp_path_factory):
+    """A site behind a server, and a browser."""
+    with desk_at(tmp_path_factory.mktemp("site")) as found:
+        yield found
+
+
+@pytest.fixture
+def window(desk):
+    """Makes windows of Zoé."""
+    with windows(desk, ZOE) as open_:
+        yield open_
 
 
 @pytest.fixture(scope="session", autouse=True)

@@ -2,7 +2,7 @@
 
 import constructions
 import pytest
-from site_browser import desk_at, too_wide
+from site_browser import too_wide
 from site_pencil import Draughtsman
 
 import coursework
@@ -10,12 +10,6 @@ import coursework
 pytestmark = pytest.mark.e2e
 
 DRAWN = [name for name in coursework.open_course().names if coursework.open_course()[name].spec.drawing_mm]
-
-
-@pytest.fixture(scope="module")
-def desk(tmp_path_factory):
-    with desk_at(tmp_path_factory.mktemp("site")) as desk:
-        yield desk
 
 
 @pytest.mark.parametrize(("size", "lang"), [("telephone", "fr"), ("desk", "en")])

@@ -4,22 +4,9 @@ import cmath
 import math
 
 import pytest
-from site_browser import desk_at, serious, too_wide, windows
-from site_people import ZOE
+from site_browser import serious, too_wide
 
 pytestmark = pytest.mark.e2e
-
-
-@pytest.fixture(scope="module")
-def desk(tmp_path_factory):
-    with desk_at(tmp_path_factory.mktemp("site")) as found:
-        yield found
-
-
-@pytest.fixture
-def window(desk):
-    with windows(desk, ZOE) as open_:
-        yield open_
 
 
 def drag(page, start, steps):

@@ -5,8 +5,8 @@ from dataclasses import replace
 
 import pytest
 from site_assignments import ASSIGNMENT, CLOSES, dealt
-from site_browser import chromium, context_of, serious, served, told, too_wide
-from site_people import MAX, ZOE, Class, signed_in
+from site_browser import context_of, serious, told, too_wide
+from site_people import MAX, ZOE, signed_in
 from site_server import until
 
 from coursework.database.drafts import drafts
@@ -21,14 +21,6 @@ _EXERCISES = iter(
     "ball_reducer quick_return four_bar_positions crank_rocker_design mechanical_advantage slider_crank".split()
 )
 _ON_DEVICE = "Object.entries(localStorage).filter(([key]) => key.startsWith('coursework ')).map(([, text]) => text).join()"
-
-
-@pytest.fixture(scope="module")
-def desk(tmp_path_factory):
-    """A site behind a server, and a browser."""
-    class_ = Class(f"sqlite:///{tmp_path_factory.mktemp('site')}/site.db")
-    with served(class_) as address, chromium() as browser:
-        yield class_, address, browser
 
 
 class Device:

@@ -1,28 +1,13 @@
 """Lessons in Chromium: step by step by touch to an exercise, back to the place, blanks that are marked, the whole page without a script."""
 
 import pytest
-from site_browser import cut_in_print, desk_at, low, serious, too_wide, watched, windows
-from site_people import ZOE
+from site_browser import cut_in_print, low, serious, too_wide, watched
 
 from coursework.site.lessons.lesson_content import lesson_of
 
 pytestmark = pytest.mark.e2e
 
 LESSON = "mobility_and_groups"  #: one that is short
-
-
-@pytest.fixture(scope="module")
-def desk(tmp_path_factory):
-    """A site behind a server, and a browser."""
-    with desk_at(tmp_path_factory.mktemp("site")) as found:
-        yield found
-
-
-@pytest.fixture
-def window(desk):
-    """Makes windows of Zoé."""
-    with windows(desk, ZOE) as open_:
-        yield open_
 
 
 def shown(page):

@@ -1,20 +1,13 @@
 """Practice in Chromium: a sheet fits its screen, pieces come in place, a page without script does; what is kept: test_keeping_browser.py."""
 
 import pytest
-from site_browser import desk_at, low, serious, too_wide, windows
+from site_browser import low, serious, too_wide, windows
 from site_people import ZOE
 from site_practising import right_answer
 
 pytestmark = pytest.mark.e2e
 
 EXERCISE = "slotted_mechanism"
-
-
-@pytest.fixture(scope="module")
-def desk(tmp_path_factory):
-    """A site behind a server, and a browser."""
-    with desk_at(tmp_path_factory.mktemp("site")) as found:
-        yield found
 
 
 @pytest.fixture
