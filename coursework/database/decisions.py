@@ -46,46 +46,46 @@ def decide(connection: Connection, assignment_id: int, decisions: Iterable[Decis
         Points that are more than the part has, or none where some are given.
     """
     decisions = list(decisions)
-    for one in decisions:
-        kinds = KINDS if one.student else (*KINDS, *ADJUSTMENTS)
-        if one.kind not in kinds:
+    for entry in decisions:
+        kinds = KINDS if entry.student else (*KINDS, *ADJUSTMENTS)
+        if entry.kind not in kinds:
             raise UnknownName(
-                "no kind of decision {kind!r}{nearest}", kind=one.kind, nearest=nearest(one.kind, kinds)
+                "no kind of decision {kind!r}{nearest}", kind=entry.kind, nearest=nearest(entry.kind, kinds)
             )
-        if one.kind == GIVEN and one.points is None:
+        if entry.kind == GIVEN and entry.points is None:
             raise BadInput("points are given, or the answer is accepted: say how many")
-    _check(connection, assignment_id, [one for one in decisions if one.kind != WITHDRAWN])
+    _check(connection, assignment_id, [entry for entry in decisions if entry.kind != WITHDRAWN])
     if decisions:
         now = {"assignment_id": assignment_id, "made": datetime.now(UTC)}
-        rows = [{**dict(zip(_STORED, one, strict=False)), **now} for one in decisions]
+        rows = [{**dict(zip(_STORED, entry, strict=False)), **now} for entry in decisions]
         connection.execute(insert(decision), rows)
 
 
 def _check(connection: Connection, assignment_id: int, decisions: Sequence[Decision]) -> None:
     """Raise an error for an exercise or a part that does not exist, or for more points than the part has."""
-    exercises = {one.exercise for one in decisions}
+    exercises = {entry.exercise for entry in decisions}
     query = select(variant.c.exercise, variant.c.record["parts"].label("parts")).where(
         variant.c.assignment_id == assignment_id, variant.c.exercise.in_(exercises)
     )
     worth: dict[str, dict[str, float]] = {}
     for row in connection.execute(query) if decisions else ():
         worth.setdefault(row.exercise, {}).update({str(p["id"]): float(p["points"]) for p in row.parts})
-    for one in decisions:
-        if one.kind in ADJUSTMENTS:
-            check_adjustment(one, worth)
+    for entry in decisions:
+        if entry.kind in ADJUSTMENTS:
+            check_adjustment(entry, worth)
             continue
-        parts = worth.get(one.exercise)
+        parts = worth.get(entry.exercise)
         if parts is None:
-            raise UnknownName("no exercise {exercise!r} was issued", exercise=one.exercise)
-        if one.part not in parts:
+            raise UnknownName("no exercise {exercise!r} was issued", exercise=entry.exercise)
+        if entry.part not in parts:
             raise UnknownName(
                 "{exercise} has no part {part!r}{nearest}",
-                exercise=one.exercise,
-                part=one.part,
-                nearest=nearest(one.part, parts),
+                exercise=entry.exercise,
+                part=entry.part,
+                nearest=nearest(entry.part, parts),
             )
-        if one.points is not None:
-            check_points(one.points, one.part, parts[one.part], f"{one.student}, {one.exercise}")
+        if entry.points is not None:
+            check_points(entry.points, entry.part, parts[entry.part], f"{entry.student}, {entry.exercise}")
 
 
 # ---------------------------------------------------------------------- reading
@@ -169,18 +169,18 @@ def store_new_decisions(connection: Connection, assignment_id: int, files: Decis
     BadInput
         An answer is given more points than its part has.
     """
-    remembered = [one for path in files.files for one in _remembered(connection, assignment_id, path)]
-    known = Counter(one[:_STATED] for one in remembered if not one.student)
+    remembered = [entry for path in files.files for entry in _remembered(connection, assignment_id, path)]
+    known = Counter(entry[:_STATED] for entry in remembered if not entry.student)
     new_steps = []
-    for one in files.lines:
-        if not one.student:
-            known[one[:_STATED]] -= 1
-            new_steps += [one] if known[one[:_STATED]] < 0 else []
-    gone = [one for one in remembered if known[one[:_STATED]] > 0 and one.kind != WITHDRAWN]
+    for entry in files.lines:
+        if not entry.student:
+            known[entry[:_STATED]] -= 1
+            new_steps += [entry] if known[entry[:_STATED]] < 0 else []
+    gone = [entry for entry in remembered if known[entry[:_STATED]] > 0 and entry.kind != WITHDRAWN]
     taken_back = [step.withdrawn() for step in gone]
     decide(connection, assignment_id, [*taken_back, *new_steps])
-    was = _by_answer(one for one in remembered if one.student)
-    now = _by_answer(one._replace(line=0, location="") for one in files.lines if one.student)
+    was = _by_answer(entry for entry in remembered if entry.student)
+    now = _by_answer(entry._replace(line=0, location="") for entry in files.lines if entry.student)
     decisions = read_decisions(connection, assignment_id)
     names = {TO_MARK_FILE, ACCEPTED_FILE, DECISIONS_FILE, *(path.name for path in files.files)}
     changed = [on for on in dict.fromkeys((*was, *now)) if was.get(on) != now.get(on)]
@@ -188,8 +188,8 @@ def store_new_decisions(connection: Connection, assignment_id: int, files: Decis
         standing = decisions.on(*on)
         if on in was and standing and standing[-1].by in names and standing[-1].kind != WITHDRAWN:
             _store_decision(connection, assignment_id, was[on][-1].withdrawn(seed=""))
-        for one in now.get(on, ()):
-            _store_decision(connection, assignment_id, one)
+        for entry in now.get(on, ()):
+            _store_decision(connection, assignment_id, entry)
     remember_written(connection, assignment_id, files)
     return len(changed) + len(new_steps) + len(gone)
 
@@ -198,8 +198,8 @@ def remember_written(connection: Connection, assignment_id: int, files: Decision
     """Record the content of the files, so that it counts as known."""
     for path, decisions in files.files.items():
         key = {"assignment_id": assignment_id, "file": _file(path)}
-        lines = [list(one[:_STATED]) for one in decisions if one.kind != EDITED]
-        if lines != [list(one[:_STATED]) for one in _remembered(connection, assignment_id, path)]:
+        lines = [list(entry[:_STATED]) for entry in decisions if entry.kind != EDITED]
+        if lines != [list(entry[:_STATED]) for entry in _remembered(connection, assignment_id, path)]:
             connection.execute(delete(worksheet).filter_by(**key))
             connection.execute(insert(worksheet).values(lines=lines, **key))
 
@@ -207,16 +207,16 @@ def remember_written(connection: Connection, assignment_id: int, files: Decision
 _STATED = Decision._fields.index("made")  #: fields of a decision that a worksheet has
 
 
-def _store_decision(connection: Connection, assignment_id: int, one: Decision) -> None:
+def _store_decision(connection: Connection, assignment_id: int, entry: Decision) -> None:
     """Store a decision; ignore a line that names nothing issued, since the reader of the file reports it."""
     with suppress(UnknownName):
-        decide(connection, assignment_id, [one])
+        decide(connection, assignment_id, [entry])
 
 
 def _by_answer(decisions: Iterable[Decision]) -> dict[tuple[str, str, str], list[Decision]]:
     by_answer: dict[tuple[str, str, str], list[Decision]] = {}
-    for one in decisions:
-        by_answer.setdefault(one.key, []).append(one)
+    for entry in decisions:
+        by_answer.setdefault(entry.key, []).append(entry)
     return by_answer
 
 

@@ -52,42 +52,42 @@ class Adjustments:
     def __init__(self, steps: Iterable[Decision] = ()) -> None:
         self.steps: tuple[Decision, ...] = tuple(steps)  #: those that stand
         self._last: dict[tuple[str, ...], Decision] = {}
-        for one in self.steps:
-            slot = _SLOTS.get(one.kind, one.kind)
-            verdict = (one.answer or "") if one.kind == PRICE else ""
-            self._last[slot, one.exercise, one.part, verdict] = one
+        for decision in self.steps:
+            slot = _SLOTS.get(decision.kind, decision.kind)
+            verdict = (decision.answer or "") if decision.kind == PRICE else ""
+            self._last[slot, decision.exercise, decision.part, verdict] = decision
 
     def __bool__(self) -> bool:
         return bool(self.steps)
 
     def _of(self, *kinds: str) -> dict[Question, Decision]:
         return {
-            (exercise, part): one
-            for (_, exercise, part, _), one in self._last.items()
-            if one.kind in kinds and exercise
+            (exercise, part): decision
+            for (_, exercise, part, _), decision in self._last.items()
+            if decision.kind in kinds and exercise
         }
 
     @cached_property
     def weights(self) -> dict[Question, float]:
         """Points of the questions whose weight is changed."""
-        return {question: float(one.points or 0.0) for question, one in self._of(WEIGHT).items()}
+        return {question: float(decision.points or 0.0) for question, decision in self._of(WEIGHT).items()}
 
     @cached_property
     def statuses(self) -> dict[Question, str]:
         """Kind of the questions that do not count as usual."""
-        return {question: one.kind for question, one in self._of(*_STATUS).items()}
+        return {question: decision.kind for question, decision in self._of(*_STATUS).items()}
 
     @cached_property
     def tolerances(self) -> dict[Question, float]:
         """Accepted half-widths of the questions whose margin is wider."""
-        return {question: float(one.points or 1.0) for question, one in self._of(TOLERANCE).items()}
+        return {question: float(decision.points or 1.0) for question, decision in self._of(TOLERANCE).items()}
 
     @cached_property
     def prices(self) -> dict[tuple[str, str, str], float]:
         """Share of the points that a verdict leaves, by exercise, part (empty for all) and verdict."""
         return {
-            (exercise, part, verdict): float(one.points or 0.0)
-            for (slot, exercise, part, verdict), one in self._last.items()
+            (exercise, part, verdict): float(decision.points or 0.0)
+            for (slot, exercise, part, verdict), decision in self._last.items()
             if slot == PRICE
         }
 
@@ -123,7 +123,7 @@ class Adjustments:
 
     @property
     def _has_scale(self) -> bool:
-        return any(one.kind in ON_SCALE for one in self._last.values())
+        return any(decision.kind in ON_SCALE for decision in self._last.values())
 
     def scale(self, issued: Issued) -> dict[str, Any]:
         """Return the scale of the mark with these adjustments."""
@@ -291,7 +291,7 @@ def curve_of(text: str) -> tuple[CurvePoint, ...]:
     return tuple(points)
 
 
-def check_adjustment(one: Decision, worth: Mapping[str, Mapping[str, float]]) -> None:
+def check_adjustment(decision: Decision, worth: Mapping[str, Mapping[str, float]]) -> None:
     """Refuse an adjustment that makes no sense; ``worth`` are the points of the issued parts, by exercise and part.
 
     Raises
@@ -299,44 +299,44 @@ def check_adjustment(one: Decision, worth: Mapping[str, Mapping[str, float]]) ->
     BadInput
         Its question was not issued, or its value is impossible.
     """
-    if one.kind in ON_SCALE:
-        if one.kind == CURVE:
-            curve_of(one.answer or "")
-        elif not 0 < (one.points or 0.0) <= 1e6:
-            raise _bad_value(one)
+    if decision.kind in ON_SCALE:
+        if decision.kind == CURVE:
+            curve_of(decision.answer or "")
+        elif not 0 < (decision.points or 0.0) <= 1e6:
+            raise _bad_value(decision)
         return
-    if one.exercise not in worth if one.exercise else one.kind != PRICE:
-        raise BadInput("no exercise {exercise!r} was issued", exercise=one.exercise)
-    if one.part not in worth[one.exercise] if one.part else one.kind != PRICE:
+    if decision.exercise not in worth if decision.exercise else decision.kind != PRICE:
+        raise BadInput("no exercise {exercise!r} was issued", exercise=decision.exercise)
+    if decision.part not in worth[decision.exercise] if decision.part else decision.kind != PRICE:
         raise BadInput(
             "{exercise} has no part {part!r}{nearest}",
-            exercise=one.exercise,
-            part=one.part,
-            nearest=nearest(one.part, worth[one.exercise]),
+            exercise=decision.exercise,
+            part=decision.part,
+            nearest=nearest(decision.part, worth[decision.exercise]),
         )
-    if one.kind == PRICE and (one.answer or "").partition(":")[0] not in PRICED:
+    if decision.kind == PRICE and (decision.answer or "").partition(":")[0] not in PRICED:
         raise BadInput(
             "a price is of a verdict: {verdicts}, such as slip:sign; found {found!r}",
             verdicts=", ".join(PRICED),
-            found=(one.answer or "")[:40],
+            found=(decision.answer or "")[:40],
         )
     limits = {WEIGHT: (1e-6, MOST_WEIGHT), TOLERANCE: (1.0, WIDEST), PRICE: (0.0, 1.0)}
-    low, high = limits.get(one.kind, (0.0, 0.0))
-    if one.kind in limits and not (one.points is not None and low <= one.points <= high):
-        raise _bad_value(one)
+    low, high = limits.get(decision.kind, (0.0, 0.0))
+    if decision.kind in limits and not (decision.points is not None and low <= decision.points <= high):
+        raise _bad_value(decision)
 
 
-def _bad_value(one: Decision) -> BadInput:
+def _bad_value(decision: Decision) -> BadInput:
     wanted = {
         WEIGHT: Message("points above 0"),
         TOLERANCE: Message("a number of accepted margins from 1 to 100: a margin only becomes wider"),
         PRICE: Message("a share from 0 to 1"),
         FULL: Message("the points that are worth the best mark"),
         STEP: Message("a step above 0"),
-    }[one.kind]
+    }[decision.kind]
     return BadInput(
         "{place}{kind}: {wanted}",
-        place=Message("{file}: ", file=one.location) if one.location else "",
-        kind=one.kind,
+        place=Message("{file}: ", file=decision.location) if decision.location else "",
+        kind=decision.kind,
         wanted=wanted,
     )

@@ -78,14 +78,14 @@ class DrawingParts(NamedTuple):
     hung: frozenset[str] = frozenset()  #: names of mistakes that tell on what a vector hangs
 
 
-def verdicts(answers: Answers, polygon: Polygon, asked: DrawingParts) -> dict[str, Judged]:
+def verdicts(answers: Answers, polygon: Polygon, requested: DrawingParts) -> dict[str, Judged]:
     """Return a :class:`Judged` for each answer that can be judged."""
-    judgements = _verdicts(answers, polygon, asked)
-    ends = {**asked.lengths, **{part: (read.start, read.end) for part, read in asked.reads.items()}}
-    drawn_ones = {asked.points[i] for i in asked.points if i in answers}
-    points = [i for i, point in asked.points.items() if point != polygon.pole]
+    judgements = _verdicts(answers, polygon, requested)
+    ends = {**requested.lengths, **{part: (read.start, read.end) for part, read in requested.reads.items()}}
+    drawn_ones = {requested.points[i] for i in requested.points if i in answers}
+    points = [i for i, point in requested.points.items() if point != polygon.pole]
     undrawn = [i for i, of in ends.items() if not drawn_ones.issuperset(of)]
-    return read_off(judgements, points, (asked.scale, *ends), undrawn)
+    return read_off(judgements, points, (requested.scale, *ends), undrawn)
 
 
 def read_off(
@@ -109,34 +109,40 @@ def read_off(
     }
 
 
-def _verdicts(answers: Answers, polygon: Polygon, asked: DrawingParts) -> dict[str, Judged]:
-    scale = _stated(answers, polygon, asked)
-    readings = drawn(answers, polygon, asked)
+def _verdicts(answers: Answers, polygon: Polygon, requested: DrawingParts) -> dict[str, Judged]:
+    scale = _stated(answers, polygon, requested)
+    readings = drawn(answers, polygon, requested)
     if readings is None:
         if scale is None:
-            return _right_reads(answers, polygon, asked)
+            return _right_reads(answers, polygon, requested)
         # Lengths alone: nothing is drawn, and they are what they should be or not.
         bare = judge_drawing(polygon, {polygon.pole: 0j}, scale)
-        judgements = {asked.scale: Judged()} if bare.is_legible else {asked.scale: Judged(0.0, "too_small")}
-        return judgements | _lengths(answers, bare, asked) | _reads(answers, bare, asked)
+        judgements = (
+            {requested.scale: Judged()} if bare.is_legible else {requested.scale: Judged(0.0, "too_small")}
+        )
+        return judgements | _lengths(answers, bare, requested) | _reads(answers, bare, requested)
     drawing, upside_down = readings
     if not drawing.is_legible:
-        of_it = (*asked.points, *asked.lengths, asked.scale)
-        return {i: Judged(0.0, "too_small") for i in of_it if i in answers} | _reads(answers, drawing, asked)
-    judgements = {asked.scale: _of_scale(scale, upside_down, drawing)} if asked.scale in answers else {}
-    for part, point in asked.points.items():
+        of_it = (*requested.points, *requested.lengths, requested.scale)
+        return {i: Judged(0.0, "too_small") for i in of_it if i in answers} | _reads(
+            answers, drawing, requested
+        )
+    judgements = (
+        {requested.scale: _of_scale(scale, upside_down, drawing)} if requested.scale in answers else {}
+    )
+    for part, point in requested.points.items():
         if part in answers:
-            judgements[part] = _of_point(point, drawing, asked)
-    return judgements | _lengths(answers, drawing, asked) | _reads(answers, drawing, asked)
+            judgements[part] = _of_point(point, drawing, requested)
+    return judgements | _lengths(answers, drawing, requested) | _reads(answers, drawing, requested)
 
 
-def drawn(answers: Answers, polygon: Polygon, asked: DrawingParts) -> tuple[JudgedDrawing, bool] | None:
+def drawn(answers: Answers, polygon: Polygon, requested: DrawingParts) -> tuple[JudgedDrawing, bool] | None:
     """Return the judged drawing of these answers, and whether its scale is stated upside down; None unless the pole and
     another point are drawn."""
-    points = {asked.points[i]: complex(*answers[i]) for i in asked.points if i in answers}
+    points = {requested.points[i]: complex(*answers[i]) for i in requested.points if i in answers}
     if polygon.pole not in points or len(points) < 2:
         return None
-    scale = _stated(answers, polygon, asked)
+    scale = _stated(answers, polygon, requested)
     drawing = judge_drawing(polygon, points, scale)
     if scale is not None and is_scale(polygon, 1 / scale):
         other = judge_drawing(polygon, points, 1 / scale)
@@ -145,9 +151,9 @@ def drawn(answers: Answers, polygon: Polygon, asked: DrawingParts) -> tuple[Judg
     return drawing, False
 
 
-def _stated(answers: Answers, polygon: Polygon, asked: DrawingParts) -> float | None:
+def _stated(answers: Answers, polygon: Polygon, requested: DrawingParts) -> float | None:
     """Return the scale that the answers state, if it is one."""
-    scale = float(answers[asked.scale]) if asked.scale in answers else None
+    scale = float(answers[requested.scale]) if requested.scale in answers else None
     return scale if scale is not None and is_scale(polygon, scale) else None
 
 
@@ -167,18 +173,18 @@ def _of_scale(scale: float | None, upside_down: bool, drawing: JudgedDrawing) ->
     return Judged() if drawing.fits_stated_scale else Judged(0.0, "scale_not_drawn")
 
 
-def _of_point(point: str, drawing: JudgedDrawing, asked: DrawingParts) -> Judged:
+def _of_point(point: str, drawing: JudgedDrawing, requested: DrawingParts) -> Judged:
     if point == drawing.polygon.pole:
         # Any pole is right from which something was drawn; what is wrong about that is another point's.
         others = [q for q in drawing.points if q != point]
         return (
             Judged()
             if any(_is_drawn_from(point, q, drawing) for q in others)
-            else _of_fault(others[0], drawing, asked)
+            else _of_fault(others[0], drawing, requested)
         )
     if drawing.is_right(point):
         return Judged(follows=drawing.follows(point))
-    return _of_fault(point, drawing, asked)
+    return _of_fault(point, drawing, requested)
 
 
 _ATTEMPT = (
@@ -194,34 +200,34 @@ def _is_drawn_from(pole: str, point: str, drawing: JudgedDrawing) -> bool:
     return drawing.is_right(point) or right / _ATTEMPT <= length <= _ATTEMPT * right
 
 
-def _of_fault(point: str, drawing: JudgedDrawing, asked: DrawingParts) -> Judged:
+def _of_fault(point: str, drawing: JudgedDrawing, requested: DrawingParts) -> Judged:
     fault = drawing.faults[point]
-    names = [_named(point, f, asked) for f in fault.explanations]
+    names = [_named(point, f, requested) for f in fault.explanations]
     printed = [name for name in names if name]
     return Judged(0.0, printed[0], also=tuple(printed[1:]))
 
 
-def _named(point: str, fault: DrawingFault, asked: DrawingParts) -> str:
+def _named(point: str, fault: DrawingFault, requested: DrawingParts) -> str:
     """Return the mistake that a fault is; none where a vector hangs on a point of which no mistake tells."""
-    parts = {image: i for i, image in asked.points.items()}
+    parts = {image: i for i, image in requested.points.items()}
     if fault.side is None:
         return f"{parts[point]}_{fault.kind}"
-    side = asked.sides[fault.side.start, fault.side.end]
+    side = requested.sides[fault.side.start, fault.side.end]
     if fault.kind != HUNG:
         return f"{side}_{fault.kind}"
     name = f"{side}_on_{parts[fault.on]}"
-    return name if name in asked.hung else ""
+    return name if name in requested.hung else ""
 
 
-def _lengths(answers: Answers, drawing: JudgedDrawing, asked: DrawingParts) -> dict[str, Judged]:
+def _lengths(answers: Answers, drawing: JudgedDrawing, requested: DrawingParts) -> dict[str, Judged]:
     judgements: dict[str, Judged] = {}
-    for part, (start, end) in asked.lengths.items():
+    for part, (start, end) in requested.lengths.items():
         if part not in answers:
             continue
         length = float(answers[part])
         fault = drawing.length_fault(start, end, length)
         if fault == "length":
-            others = [ends for other, ends in asked.lengths.items() if other != part]
+            others = [ends for other, ends in requested.lengths.items() if other != part]
             exchanged = any(not drawing.length_fault(*ends, length) for ends in others)
             judgements[part] = Judged(0.0, "lengths_exchanged" if exchanged else "")
         else:
@@ -229,25 +235,25 @@ def _lengths(answers: Answers, drawing: JudgedDrawing, asked: DrawingParts) -> d
     return judgements
 
 
-def _reads(answers: Answers, drawing: JudgedDrawing, asked: DrawingParts) -> dict[str, Judged]:
+def _reads(answers: Answers, drawing: JudgedDrawing, requested: DrawingParts) -> dict[str, Judged]:
     """Right to the millimetres that the drawing may be off, a tenth at most; or as read off the student's own
     drawing, or from the student's own length."""
     judgements = {}
-    for part, read in asked.reads.items():
+    for part, read in requested.reads.items():
         if part in answers:
-            judgements[part] = _of_value(float(answers[part]), read, drawing, answers, asked)
+            judgements[part] = _of_value(float(answers[part]), read, drawing, answers, requested)
     return judgements
 
 
-def _right_reads(answers: Answers, polygon: Polygon, asked: DrawingParts) -> dict[str, Judged]:
+def _right_reads(answers: Answers, polygon: Polygon, requested: DrawingParts) -> dict[str, Judged]:
     """Without scale and drawing, the values that are right all the same; nothing can be said of the others."""
     usual = float(scale_for(*(np.asarray(image, dtype=complex) for image in polygon.points.values())))
-    judgements = _reads(answers, judge_drawing(polygon, {polygon.pole: 0j}, usual), asked)
+    judgements = _reads(answers, judge_drawing(polygon, {polygon.pole: 0j}, usual), requested)
     return {part: verdict for part, verdict in judgements.items() if verdict.share == 1.0}
 
 
 def _of_value(
-    number: float, read: Read, drawing: JudgedDrawing, answers: Answers, asked: DrawingParts
+    number: float, read: Read, drawing: JudgedDrawing, answers: Answers, requested: DrawingParts
 ) -> Judged:
     ends, scale, images = (read.start, read.end), drawing.scale, drawing.polygon.points
     right = read.value(images[read.end] - images[read.start])
@@ -260,7 +266,7 @@ def _of_value(
     sense = np.sign(alternatives[0] if alternatives else right)
     alternatives += [
         sense * float(answers[i]) * millimetre
-        for i, segment in asked.lengths.items()
+        for i, segment in requested.lengths.items()
         if segment == ends and i in answers and drawing.is_legible
     ]
     if any(
@@ -269,7 +275,7 @@ def _of_value(
         at_fault = {*ends, *ancestors(drawing.polygon, read.end)} & drawing.faults.keys()
         wrong_length = any(
             segment == ends and i in answers and drawing.length_fault(*ends, float(answers[i]))
-            for i, segment in asked.lengths.items()
+            for i, segment in requested.lengths.items()
         )
         return Judged(follows=bool(at_fault) or wrong_length)
     names = list(_wrong_ways(number, read, [right, *alternatives], drawing))
