@@ -8,7 +8,6 @@ followed numbers.
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from types import FunctionType
 from typing import Any
 
@@ -17,6 +16,7 @@ import numpy as np
 from coursework import degrees
 from coursework.kinematics.angles import Degrees
 from coursework.kinematics.dyads import side_of
+from coursework.quantities.other_names import OtherNames, package_of
 
 
 def _degrees_of(angle: Any) -> Any:
@@ -115,36 +115,11 @@ _TWINS: dict[str, Any] = {
 }
 
 
-class Twinned:
+class Twinned(OtherNames):
     """Functions of a course with the core's functions replaced by their twins."""
 
-    def __init__(self) -> None:
-        self._spaces: dict[int, dict[str, Any]] = {}
-        self._cached: dict[int, Any] = {}
-
-    def __call__(self, function: Any) -> Callable[..., Any]:
-        if not isinstance(function, FunctionType):
-            return function
-        if id(function) not in self._cached:
-            space = self._space(function)
-            created = FunctionType(
-                function.__code__, space, function.__name__, function.__defaults__, function.__closure__
-            )
-            created.__kwdefaults__ = function.__kwdefaults__
-            self._cached[id(function)] = created
-        return self._cached[id(function)]
-
-    def _space(self, function: FunctionType) -> dict[str, Any]:
-        names = function.__globals__
-        if id(names) not in self._spaces:
-            space = self._spaces[id(names)] = dict(names)
-            package = (function.__module__ or "").partition(".")[0]
-            space |= {name: self._seen(value, package) for name, value in names.items()}
-        return self._spaces[id(names)]
-
-    def _seen(self, value: Any, package: str) -> Any:
-        home = getattr(value, "__module__", None) or ""
-        if home.startswith(_CORE):
+    def value(self, name: str, value: Any, package: str) -> Any:
+        if (getattr(value, "__module__", None) or "").startswith(_CORE):
             return _TWINS.get(getattr(value, "__name__", ""), value)
-        is_own = isinstance(value, FunctionType) and home.partition(".")[0] == package != "coursework"
+        is_own = isinstance(value, FunctionType) and package_of(value) == package != "coursework"
         return self(value) if is_own else value

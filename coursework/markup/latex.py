@@ -115,11 +115,11 @@ def to_latex(tex: str, lang: str) -> str:
     return _latex(parse(tex), lang)
 
 
-def _num(num: Num, lang: str) -> str:
+def _num(num: Num, lang: str, minus: str = "{-}") -> str:
     digits = num.digits.replace(".", "{,}") if localise(".", lang) == "," else num.digits
     power = rf" \times 10^{{{int(num.exponent)}}}" if num.exponent else ""
     # In braces the sign stands close to its number, whatever is before it.
-    return ("{-}" if num.negative else "") + digits + power
+    return (minus if num.negative else "") + digits + power
 
 
 def _symbol(symbol: Symbol) -> str:
@@ -210,6 +210,4 @@ def _exponent(raised: re.Match[str]) -> str:
 
 def _latex_number(text: str, lang: str) -> str:
     num = next(n for n in parse(rf"\num{{{text}}}").items if isinstance(n, Num))
-    digits = num.digits.replace(".", "{,}") if localise(".", lang) == "," else num.digits
-    power = rf" \times 10^{{{int(num.exponent)}}}" if num.exponent else ""
-    return ("-" if num.negative else "") + digits + power
+    return _num(num, lang, minus="-")

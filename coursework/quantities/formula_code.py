@@ -84,6 +84,17 @@ def call(name: str, *arguments: ast.expr) -> ast.Call:
     return ast.Call(ast.Name(name, ast.Load()), list(arguments), [])
 
 
+def added(terms: Sequence[tuple[bool, ast.expr]]) -> ast.expr:
+    """Return the sum of the signed terms; 0 where there are none."""
+    if not terms:
+        return ast.Constant(0)
+    (minus, total), *others = terms
+    total = ast.UnaryOp(ast.USub(), total) if minus else total
+    for minus, term in others:
+        total = ast.BinOp(total, ast.Sub() if minus else ast.Add(), term)
+    return total
+
+
 def put_in(helper: Any, arguments: Sequence[ast.expr]) -> ast.expr:
     """Return the expression of a helper, with these arguments in place of its parameters.
 

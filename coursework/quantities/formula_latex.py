@@ -21,7 +21,15 @@ import numpy as np
 
 from coursework import degrees
 from coursework.language.numbers import significant
-from coursework.quantities.formula_code import NoExpression, call, called_name, expression, put_in, returning
+from coursework.quantities.formula_code import (
+    NoExpression,
+    added,
+    call,
+    called_name,
+    expression,
+    put_in,
+    returning,
+)
 from coursework.system import python_code
 
 _FUNCTIONS = {
@@ -332,7 +340,7 @@ class _Printer:
             case "where", [_, ast.Attribute(attr="nan"), inside]:
                 return self._print(inside)  # like a guard, for arrays
             case "angle", [vector] if (parts := self._components(vector)) and parts[1]:
-                return self._call("atan2", [_added(parts[1]), _added(parts[0])])
+                return self._call("atan2", [added(parts[1]), added(parts[0])])
         if name.startswith("_"):
             return self._helper(name, arguments)
         if name not in _FUNCTIONS:
@@ -387,17 +395,6 @@ def _turned(parts: tuple[list, list] | None) -> tuple[list, list] | None:
 def _times(length: ast.expr, ratio: ast.expr) -> ast.expr:
     is_one = isinstance(length, ast.Constant) and length.value == 1
     return ratio if is_one else ast.BinOp(length, ast.Mult(), ratio)
-
-
-def _added(terms: Sequence[tuple[bool, ast.expr]]) -> ast.expr:
-    """Return the sum of the signed terms; 0 where there are none."""
-    if not terms:
-        return ast.Constant(0)
-    (minus, total), *others = terms
-    total = ast.UnaryOp(ast.USub(), total) if minus else total
-    for minus, term in others:
-        total = ast.BinOp(total, ast.Sub() if minus else ast.Add(), term)
-    return total
 
 
 def _without_sign(node: ast.expr) -> tuple[ast.expr, bool]:

@@ -16,8 +16,9 @@ import numpy as np
 
 from coursework import degrees
 from coursework.errors import CourseworkError
+from coursework.quantities.other_names import OtherNames, package_of
 from coursework.quantities.sizes import DEGREE, ONE, Sizes, Unprovable
-from coursework.quantities.unit_check_by_scaling import PLAIN, opaque
+from coursework.quantities.unit_check_by_scaling import opaque
 from coursework.quantities.unit_numbers import UnitValue, alike, gathered, leaves, needs, plain, powered
 
 _NUMBERS = (int, float, complex, np.number)
@@ -110,35 +111,18 @@ def _following(function: Callable[..., Any]) -> Callable[..., Any]:
     return call
 
 
-class Lens:
+class Lens(OtherNames):
     """Functions of a course for numbers with units. ``constants``: the sizes of constants of its modules, by
     name."""
 
     def __init__(self, constants: Mapping[str, Sizes]):
+        super().__init__()
         self._constants = constants
-        self._spaces: dict[int, dict[str, Any]] = {}
-        self._cached: list[Any] = []  # so that no identity is used twice
 
-    def function(self, function: Any) -> Callable[..., Any]:
-        """Return the function for numbers with units."""
-        if not isinstance(function, FunctionType):
-            return opaque(function)
-        space = self._space(function.__globals__, _package(function.__module__))
-        created = FunctionType(
-            function.__code__, space, function.__name__, function.__defaults__, function.__closure__
-        )
-        created.__kwdefaults__ = function.__kwdefaults__
-        return created
+    def foreign(self, value: Any) -> Any:
+        return opaque(value)
 
-    def _space(self, names: dict[str, Any], package: str) -> dict[str, Any]:
-        if id(names) not in self._spaces:
-            self._cached.append(names)
-            space: dict[str, Any] = {PLAIN: names}
-            self._spaces[id(names)] = space
-            space |= {name: self._seen(name, value, package) for name, value in names.items()}
-        return self._spaces[id(names)]
-
-    def _seen(self, name: str, value: Any, package: str) -> Any:
+    def value(self, name: str, value: Any, package: str) -> Any:
         if name.startswith("__"):
             return value
         if isinstance(value, ModuleType):
@@ -159,8 +143,8 @@ class Lens:
             return _following(value)
         if home.startswith("numpy") or isinstance(value, np.ufunc):
             return getattr(_Numpy(), value.__name__, value)
-        if isinstance(value, FunctionType) and _package(home) == package:
-            return self.function(value)
+        if isinstance(value, FunctionType) and package_of(value) == package:
+            return self(value)
         return value if home == "builtins" else opaque(value)
 
     @staticmethod
@@ -170,7 +154,3 @@ class Lens:
         if module is degrees:
             return SimpleNamespace(**{**vars(degrees), **_OF_DEGREES})
         return _Math(module) if module in (math, cmath) else opaque(module)
-
-
-def _package(home: str | None) -> str:
-    return (home or "").partition(".")[0]

@@ -15,12 +15,12 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from coursework.errors import CourseworkError
+from coursework.quantities.other_names import PLAIN
 from coursework.quantities.sizes import BASES, DEGREE, ONE, Sizes, UnitFault, Unprovable, of_hard, size_text
 from coursework.quantities.unit_numbers import UnitValue, needs
 
 _Factors = tuple[float, ...]
 _SAME: _Factors = (1.0,) * BASES
-PLAIN = "__plain__"  #: where the names of a function that follows units keep those that it was written with
 _OTHERS = (1.375, 7.3)  #: factors that no rounded scale follows
 
 

@@ -102,7 +102,7 @@ class _Walk:
         try:
             if any(a is _Unknown for a in arguments):
                 raise Unprovable(f"it needs {_unknown(node, arguments)}, whose unit is not known")
-            return self._compared(name, node, self.lens.function(node.function)(*arguments))
+            return self._compared(name, node, self.lens(node.function)(*arguments))
         except UnitFault as fault:
             self.findings.wrong.setdefault(name, f"{name} {fault}: {_line(fault, node)}")
         except Unprovable as fault:

@@ -15,7 +15,7 @@ from functools import lru_cache
 from typing import Any
 
 from coursework import degrees
-from coursework.quantities.formula_code import Formula, call, called_name, formula_of
+from coursework.quantities.formula_code import Formula, added, call, called_name, formula_of
 
 TERM, SIGN, FACTOR, SQUARE, ROOT, INVERSE = "term", "term_sign", "factor", "square", "root", "inverse"
 FUNCTION, DEGREES, ALL_DEGREES, QUADRANT, BRANCH = "function", "degrees", "all_degrees", "quadrant", "branch"
@@ -144,11 +144,11 @@ class _Changes:
         terms = _terms(node)
         for index, (minus, term) in enumerate(terms):
             others = terms[:index] + terms[index + 1 :]
-            yield (COUNT if _is_small(term) else TERM), term, _sum(others)
-            yield SIGN, term, _sum([*terms[:index], (not minus, term), *terms[index + 1 :]])
+            yield (COUNT if _is_small(term) else TERM), term, added(others)
+            yield SIGN, term, added([*terms[:index], (not minus, term), *terms[index + 1 :]])
         signs = [minus for minus, _ in terms]
         yield from self._inside(
-            [term for _, term in terms], lambda changed: _sum(list(zip(signs, changed, strict=True)))
+            [term for _, term in terms], lambda changed: added(list(zip(signs, changed, strict=True)))
         )
 
     def _of_product(self, node: ast.BinOp) -> Iterator[_Change]:
@@ -285,14 +285,6 @@ def _terms(node: ast.expr) -> list[tuple[bool, ast.expr]]:
             )
             return [(minus, ast.BinOp(first, op, right))] if not more else [(False, node)]
     return [(False, node)]
-
-
-def _sum(terms: Sequence[tuple[bool, ast.expr]]) -> ast.expr:
-    (minus, total), *others = terms
-    total = ast.UnaryOp(ast.USub(), total) if minus else total
-    for minus, term in others:
-        total = ast.BinOp(total, ast.Sub() if minus else ast.Add(), term)
-    return total
 
 
 def _factors(node: ast.expr) -> tuple[list[ast.expr], list[ast.expr]]:
