@@ -31,13 +31,13 @@ def typst_source(folders: Sequence[Path], book: Book, paper: str = "a4", *, apar
     """Return the Typst source of a book; ``apart``: of its solutions alone."""
     env = pdf.environment_of(tuple(folders), book.lang)
     names = _of_book(book) | {"paper": paper, "apart": apart, "tall": _TALL}
-    names |= {
-        "exercises": {
-            exercise.handout.exercise: _exercise(env, exercise, "typ.j2") for exercise in book.exercises
-        }
+    called = words(book.lang)["book"]["exercise"]
+    names["exercises"] = {
+        exercise.handout.exercise: _exercise(env, exercise, called.format(exercise.number), "typ.j2")
+        for exercise in book.exercises
     }
     names["papers"] = {
-        exercise.number: _exercise(env, exercise, "typ.j2")
+        exercise.number: _exercise(env, exercise, exercise.handout.title, "typ.j2")
         for chapter in book.chapters
         for exercise in chapter.paper
     }
@@ -77,16 +77,19 @@ def _of_book(book: Book) -> dict[str, Any]:
     return {"book": book, "lang": book.lang, "words": book_words, "title": book.title, "lesson_names": names}
 
 
-def _exercise(env: Environment, exercise: BookExercise, end: str) -> dict[str, Any]:
-    """Return the variables for the template of an exercise: its body, and that of its solution."""
-    names = views.context(exercise.handout, 1, numbered=False)
+def _exercise(env: Environment, exercise: BookExercise, whose: str, end: str) -> dict[str, Any]:
+    """Return the variables for the template of an exercise: its body, and that of its solution. ``whose`` stands above what was
+    moved to the next page."""
+    names = views.context(exercise.handout, 1, numbered=False) | {"whose": whose}
     names["body"] = Markup(render(env, f"sheet/_body.{end}", names))
     solved = views.context(exercise.solution, 1, numbered=False)
     names["solution_body"] = Markup(render(env, f"sheet/_solution_body.{end}", solved))
     return names
 
 
-def _typst_pieces(env: Environment, book: Book, lesson: LessonText, pieces: Sequence[Piece]) -> Markup:
+def _typst_pieces(
+    env: Environment, book: Book, lesson: LessonText, pieces: Sequence[Piece], *, floats: bool = True
+) -> Markup:
     here = (
         {exercise.handout.exercise for exercise in book.exercises},
         {exercise.name for exercise in book.lessons},
@@ -107,6 +110,7 @@ def _typst_pieces(env: Environment, book: Book, lesson: LessonText, pieces: Sequ
         "lesson": lesson,
         "pieces": [_with_kind(piece) for piece in pieces if not isinstance(piece, BlanksPiece)],
         "tall": _TALL,
+        "floats": floats,
     }
     names["relinked"] = lambda text: relinked(text, write)
     return Markup(render(env, "book/_pieces.typ.j2", names))

@@ -113,6 +113,7 @@ def exercises_of(paper: AnyPaper, end: str, write: Body, files: Sequence[Names] 
         names |= dict(files[number - 1] if files else {})
         handout = views.handout_of(sheet)
         names["called"] = _heading_of(paper, number, handout.title)
+        names["whose"] = f"{words(paper.heading.lang)['paper']['exercise']} {number}"
         names["start_mm"] = _start_mm(sheet)
         names["work_mm"] = paper.work_mm[number - 1] if isinstance(paper, Paper) and paper.work_mm else 0
         names["body"] = Markup(write(f"{BODIES[type(paper)]}.{end}", names))
