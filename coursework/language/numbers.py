@@ -17,6 +17,15 @@ def localise(number: str, lang: str) -> str:
     return number.replace("-", MINUS).replace(".", style["decimal"])
 
 
+#: A hyphen before a number, and one between spaces before a number; what stands between dollar signs sets its own.
+_HYPHEN = re.compile(r"\$[^$]*\$|(?<![\w.)\]-])-(?=\.?\d)|(?<=\S )-(?= \.?\d)")
+
+
+def with_minus_signs(text: str) -> str:
+    """Return a text that a program printed with minus signs for the hyphens before its numbers."""
+    return _HYPHEN.sub(lambda found: MINUS if found[0] == "-" else found[0], text)
+
+
 def typed_number(text: str) -> float:
     """Return a number that somebody typed, with a decimal point or comma; NaN if it is none."""
     try:

@@ -16,12 +16,14 @@ class SvgPicture:
     """SVG drawing with its description for readers who cannot see it.
 
     ``page``: a web page that shows the same and more, under a line ``opens``; front ends that trust no notebook leave it out.
+    ``caption``: what stands below it, in the Markdown of statements.
     """
 
     svg: str
     said: str
     page: str = ""
     opens: str = ""
+    caption: str = ""
 
     @property
     def html(self) -> str:
@@ -72,6 +74,8 @@ class NotebookDisplay:
             else:
                 bundle["text/html"] = piece.html
             out.append(bundle)
+            if isinstance(piece, SvgPicture) and piece.caption:
+                out += NotebookDisplay(self.lang, f"*{piece.caption}*").bundles()
         return out
 
     def _ipython_display_(self) -> None:

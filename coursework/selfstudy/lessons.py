@@ -12,6 +12,7 @@ from coursework.figures.plot import AnswerPoint, Axis, Plot
 from coursework.language.numbers import localise, significant, unit_text
 from coursework.language.words import words
 from coursework.marking.answers import read
+from coursework.markup.markdown import plain_line
 from coursework.markup.shown import NotebookDisplay, SvgPicture
 from coursework.model import Part
 from coursework.selfstudy import predictions
@@ -105,6 +106,7 @@ def plot(
     *,
     lang: str = "fr",
     at: float | None = None,
+    caption: str = "",
 ) -> NotebookDisplay:
     r"""Plot curves over one variable, a panel each, for display in a notebook cell.
 
@@ -118,6 +120,9 @@ def plot(
         Language of the numbers.
     at
         A place on the variable that is marked.
+    caption
+        A sentence on what is plotted, with its units, in the Markdown of statements: it stands below the plot, and tells it to who
+        cannot see it.
 
     Raises
     ------
@@ -127,7 +132,8 @@ def plot(
     symbol, unit, values = over
     panels = [Axis(label, of, np.asarray(y, dtype=float)) for label, (of, y) in curves.items()]
     drawn = Plot(Axis(symbol, unit, np.asarray(values, dtype=float)), panels, lang, at)
-    return NotebookDisplay(lang, SvgPicture(drawn.svg(), f"{', '.join(curves)} / {symbol}"))
+    said = plain_line(caption, lang) or f"{', '.join(curves)} / {symbol}"
+    return NotebookDisplay(lang, SvgPicture(drawn.svg(), said, caption=caption))
 
 
 PANELS = 6  #: curves of a plot, unless some are named

@@ -13,7 +13,7 @@ from tables import each_row
 from coursework.cli import run
 from coursework.errors import BadCourse, UnknownName
 from coursework.language import words as language
-from coursework.language.numbers import significant
+from coursework.language.numbers import significant, with_minus_signs
 from coursework.system import cache
 
 
@@ -80,6 +80,12 @@ def test_a_language_that_is_not_there_names_the_file_that_would_make_it_one():
 def test_a_number_halfway_between_two_is_printed_alike_whatever_its_last_bits(halfway, digits, text):
     for off in range(-100, 101):
         assert significant(halfway * (1 + off * 2.0**-52), digits) == text
+
+
+def test_a_hyphen_before_a_number_is_printed_as_a_minus_sign_and_no_other_is():
+    told = "a -3.5 mm, (-.5), 7 - 6 = 1, Q - 1, 4-bar 1-3 x-1 1e-06 --n 2, - a, $-3 - 1$"
+    with_minus = "a −3.5 mm, (−.5), 7 − 6 = 1, Q − 1, 4-bar 1-3 x-1 1e-06 --n 2, - a, $-3 - 1$"
+    assert with_minus_signs(told) == with_minus
 
 
 def test_words_kept_from_an_earlier_run_give_way_to_a_changed_file(spanish, monkeypatch):

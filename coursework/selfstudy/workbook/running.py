@@ -22,6 +22,7 @@ from coursework.errors import BadCourse, BadInput, CourseworkError, nearest
 from coursework.figures import Figure, Picture
 from coursework.figures.moving import drawing
 from coursework.figures.moving_svg import moving_svg, still_svgs
+from coursework.language.numbers import with_minus_signs
 from coursework.markup.markdown import plain_line
 from coursework.markup.shown import NotebookDisplay, SvgPicture
 from coursework.scenes.animation import Animation
@@ -234,7 +235,7 @@ class CellSession:
         elif lines > LINES:
             fault = f"prints {lines} lines; a book has room for {LINES}"
         else:
-            yield from [PrintedPiece(text)] if text else []
+            yield from [PrintedPiece(with_minus_signs(text))] if text else []
             return
         raise BadCourse(
             f"{self._file}, line {cell.line}: the cell {fault}; show something else, or tag it notebook"
@@ -278,7 +279,7 @@ def shows(value: Any) -> CellOutput:
     if value is None:
         return CellOutput()
     if isinstance(value, PredictionTable):
-        return CellOutput(later=(ProsePiece(value.outcome),))
+        return CellOutput(later=(ProsePiece(with_minus_signs(value.outcome)),))
     if isinstance(value, WorkedExample):
         right = "\n".join(f"- {line}" for line in value.right)
         blanks = filter(None, [value.blanks_piece])
@@ -294,4 +295,7 @@ def shows(value: Any) -> CellOutput:
 
 def _pieces(displayed: NotebookDisplay) -> Iterator[Piece]:
     for piece in displayed.pieces:
-        yield DrawnPiece(piece.said, svg=piece.svg) if isinstance(piece, SvgPicture) else ProsePiece(piece)
+        if isinstance(piece, SvgPicture):
+            yield DrawnPiece(piece.said, piece.caption, svg=piece.svg)
+        else:
+            yield ProsePiece(piece)
