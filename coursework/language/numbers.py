@@ -18,7 +18,7 @@ def localise(number: str, lang: str) -> str:
 
 
 #: A hyphen before a number, and one between spaces before a number; what stands between dollar signs sets its own.
-_HYPHEN = re.compile(r"\$[^$]*\$|(?<![\w.)\]-])-(?=\.?\d)|(?<=\S )-(?= \.?\d)")
+_HYPHEN = re.compile(r"\$+[^$]*\$+|(?<![\w.)\]-])-(?=\.?\d)|(?<=\S )-(?= \.?\d)")
 
 
 def with_minus_signs(text: str) -> str:

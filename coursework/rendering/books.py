@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
@@ -16,11 +16,12 @@ from coursework.language.typography import typeset
 from coursework.language.words import words
 from coursework.markup.links import MACHINE, TERM, WORD, TextLink, relinked
 from coursework.markup.markdown import INDEX, anchor
-from coursework.rendering import html, pdf, views
+from coursework.rendering import html, papers, pdf, views
 from coursework.rendering.environment import render
 from coursework.rendering.keeping import keeping
 from coursework.rendering.surface import surface
 from coursework.sheets.book import BlanksPiece, Book, BookChapter, BookExercise, LessonText, Piece
+from coursework.sheets.paper import Paper, PaperHeading, SolutionPaper
 
 _TALL = 78  #: mm that a drawing of a lesson takes at most
 
@@ -143,7 +144,7 @@ class BookPage:
 
     file: str
     title: str
-    of: LessonText | BookExercise | BookChapter | None = None
+    of: LessonText | BookExercise | BookChapter | Paper | None = None
 
 
 def pages(
@@ -167,19 +168,44 @@ def pages(
     if solutions:
         for exercise in book.exercises:
             writers[f"solutions/{exercise.handout.exercise}.html"] = partial(_solution, env, exercise, shared)
+        for chapter in book.chapters:
+            if chapter.paper:
+                sheets = tuple(one.solution for one in chapter.paper)
+                solved = SolutionPaper(_paper_heading(book, chapter), sheets)
+                file = _paper_file(chapter)
+                writers[f"solutions/{file}"] = partial(
+                    _paper, env, solved, shared | {"exam_file": file}, "book/paper_solution.html.j2"
+                )
     return writers
 
 
 def _terms(env: Environment, book: Book, names: Mapping[str, Any]) -> str:
-    entries = sorted(book.terms.items(), key=lambda item: bare_letters(item[0]))
-    listed = [
-        (
-            typeset(entry, book.lang),
-            [(f"{name}.html#{anchor(entry)}", _title_of(book, name)) for name in lessons],
-        )
-        for entry, lessons in entries
-    ]
-    more = {"terms": listed, "title": words(book.lang)["book"]["index"]}
+    terms = book.terms
+    machines: dict[str, list[BookExercise]] = {one.entry: [] for one in book.machines} | dict(_machines(book))
+    see: dict[str, list[str]] = {}
+    for one in book.see:
+        if one.to in terms:
+            see.setdefault(one.entry, []).append(one.to)
+
+    def listed(entries: Iterable[str]) -> list[dict[str, Any]]:
+        return [
+            {
+                "entry": typeset(entry, book.lang),
+                "anchor": anchor(entry),
+                "places": [
+                    (f"{name}.html#{anchor(entry)}", _title_of(book, name)) for name in terms.get(entry, ())
+                ],
+                "see": [(f"#{anchor(to)}", typeset(to, book.lang)) for to in see.get(entry, ())],
+                "exercises": machines.get(entry, ()),
+            }
+            for entry in sorted(entries, key=bare_letters)
+        ]
+
+    more = {
+        "terms": listed({*terms, *see} - machines.keys()),
+        "machines": listed(entry for entry, exercises in machines.items() if exercises or entry in terms),
+        "title": words(book.lang)["book"]["index"],
+    }
     return render(env, "book/terms.html.j2", {**names, **more})
 
 
@@ -203,12 +229,35 @@ def _pages(book: Book) -> Iterator[BookPage]:
                     f"{exercise.number} {exercise.handout.title}",
                     exercise,
                 )
+        if chapter.paper:
+            heading = _paper_heading(book, chapter)
+            yield BookPage(
+                _paper_file(chapter),
+                heading.title,
+                Paper(heading, tuple(one.handout for one in chapter.paper)),
+            )
         if chapter.summary:
             yield BookPage(
                 f"summary-{chapter.number}.html", book_words["summary"].format(chapter.number), chapter
             )
     for part in book.back:
         yield BookPage(f"book-{part.name}.html", part.title, part)
+
+
+def _paper_file(chapter: BookChapter) -> str:
+    return f"paper-{chapter.number}.html"
+
+
+def _paper_heading(book: Book, chapter: BookChapter) -> PaperHeading:
+    book_words = words(book.lang)["book"]
+    told = book_words["paper_told"].format(chapter.paper_minutes)
+    return PaperHeading(
+        book.lang, book_words["paper"].format(chapter.number), book.title, student="", duration=told
+    )
+
+
+def _paper(env: Environment, paper: Paper | SolutionPaper, names: Mapping[str, Any], template: str) -> str:
+    return render(env, template, {**names, **papers.page_names(env, paper)})
 
 
 def _title_of(book: Book, lesson: str) -> str:
@@ -228,6 +277,8 @@ def _page(env: Environment, book: Book, page: BookPage, names: Mapping[str, Any]
         more = views.context(sheet) | {"one": page.of, "keeping": keeping([sheet], sheet.student, sheet.lang)}
         more["draws"] = surface(sheet) is not None
         return render(env, "book/exercise.html.j2", {**names, **more})
+    if isinstance(page.of, Paper):
+        return _paper(env, page.of, names, "book/paper.html.j2")
     if isinstance(page.of, BookChapter):
         return render(env, "book/summary.html.j2", {**names, "chapter": page.of})
     return render(env, "book/contents.html.j2", names)

@@ -207,14 +207,17 @@ def _text(data: bytes) -> str:
 def page(folders: Sequence[Path], paper: AnyPaper, size: str = "a4") -> str:
     """Return a paper as one web page that fetches nothing; that of a student to fill in runs a script that keeps answers, and one
     to draw with where there is something to draw."""
+    env = html.environment_of(tuple(folders), paper.heading.lang)
+    return render(env, f"{TEMPLATES[type(paper)]}.html.j2", page_names(env, paper) | {"paper": size})
+
+
+def page_names(env: Environment, paper: AnyPaper) -> dict[str, Any]:
+    """Return the names for the template of a paper's page."""
+    if not isinstance(paper, Paper):
+        return context(paper, "html.j2", partial(render, env)) | {"image": image}
     heading = paper.heading
-    env = html.environment_of(tuple(folders), heading.lang)
-    if isinstance(paper, Paper):
-        names = drawing_context(paper, env)
-        names["keeping"] = keeping(paper.handouts, heading.student, heading.lang, numbered=True)
-    else:
-        names = context(paper, "html.j2", partial(render, env))
-    return render(env, f"{TEMPLATES[type(paper)]}.html.j2", names | {"paper": size, "image": image})
+    kept = keeping(paper.handouts, heading.student, heading.lang, numbered=True)
+    return drawing_context(paper, env) | {"keeping": kept, "image": image}
 
 
 def drawing_context(paper: Paper, env: Environment) -> dict[str, Any]:

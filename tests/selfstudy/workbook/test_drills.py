@@ -106,6 +106,27 @@ def test_a_students_volume_has_odd_answers_and_the_teachers_all(small):
     assert "Theyarerigid." not in without
 
 
+def test_the_pages_have_the_papers_the_references_of_the_index_and_its_machines(small):
+    (small / "exercises/book/glossary.toml").write_text(
+        'terms = [{ en = "rod" }]\nsee = [{ en = ["bar", "rod"] }, { en = ["beam", "lost"] }]\n', "utf-8"
+    )
+    (small / "exercises/book/machines.toml").write_text(
+        'machines = [{ en = "pump", exercises = ["crank_pin"] }, { en = "lathe" }]\n', "utf-8"
+    )
+    course = coursework.open_course(small)
+    pages = renderer_of(course.folder).book_pages(bound(course, "en"))
+    assert 'href="paper-1.html"' in pages["index.html"]()
+    paper, solution = pages["paper-1.html"](), pages["solutions/paper-1.html"]()
+    assert paper.count('name="e1-') == len(course["crank_pin"].variant(1).parts)
+    assert 'href="solutions/paper-1.html"' in paper
+    assert 'href="../paper-1.html"' in solution
+    listed = pages["terms.html"]()
+    assert '<li id="term-bar">bar: <a href="#term-rod"><em>see rod</em></a></li>' in listed
+    assert '<li id="term-pump">pump: exercises <a href="crank_pin.html">1.1</a></li>' in listed
+    assert "beam" not in listed
+    assert "lathe" not in listed
+
+
 def test_a_sentence_without_a_reason_is_told(small):
     (small / "exercises/book/true_or_false.toml").write_text(
         '[rods]\nsentences = [{ en = "Rods bend.", is_true = false }]\n', "utf-8"

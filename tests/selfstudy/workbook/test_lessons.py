@@ -77,11 +77,11 @@ def test_a_lesson_is_read_drawn_and_run_and_is_the_same_in_every_language(course
             if isinstance(piece, (PrintedPiece, CodePiece)):
                 assert max(map(len, piece.text.splitlines())) <= 100, f"wider than a page: {piece.text}"
             assert getattr(piece, "caption", "told") or not piece.number, piece.said
-        said = re.sub(r"\$[^$]*\$", "", "\n".join(prints(one)))
+        said = re.sub(r"\$+[^$]*\$+", "", "\n".join(prints(one)))
         assert re.findall(r".*(?<![\w.)-])-\d.*", said) == []
     if name != "accuracy":  # which has times
         assert numbers(told["en"]) == numbers(told["fr"])
-    said = re.sub(r"\$[^$]*\$", "", " ".join(prints(told["fr"])))
+    said = re.sub(r"\$+[^$]*\$+", "", " ".join(prints(told["fr"])))
     found = ENGLISH.search(said)
     assert not found, said[max(0, found.start() - 60) : found.end() + 60]
 
