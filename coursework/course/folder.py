@@ -193,15 +193,7 @@ class Folder:
     @cached_property
     def settings(self) -> Mapping[str, Any]:
         """Return the content of ``exercises/course.toml``; empty where there is none."""
-        import tomllib
-
-        path = self._settings_file
-        if not path.exists():
-            return {}
-        try:
-            return tomllib.loads(path.read_text("utf-8-sig"))
-        except (ValueError, RecursionError) as fault:
-            raise BadCourse(f"{path}: {fault}") from fault
+        return _toml(self._settings_file, str(self._settings_file))
 
     def book_table(self, name: str) -> Mapping[str, Any]:
         """Return the content of ``exercises/book/NAME.toml``, a table of the book; empty where there is none.
@@ -211,15 +203,8 @@ class Folder:
         BadCourse
             It is no TOML.
         """
-        import tomllib
-
         path = self.book_place / f"{name}.toml"
-        if not path.exists():
-            return {}
-        try:
-            return tomllib.loads(path.read_text("utf-8-sig"))
-        except (ValueError, RecursionError) as fault:
-            raise BadCourse(f"{self.relative(path)}: {fault}") from fault
+        return _toml(path, self.relative(path))
 
     @cached_property
     def languages(self) -> tuple[str, ...]:
@@ -431,10 +416,7 @@ class Folder:
         BadCourse
             There is none, or it cannot be imported.
         """
-        path = self.lesson_place / f"{name}.py"
-        if not path.exists():
-            raise BadCourse(f"the lesson {name} draws no figures: there is no {self.relative(path)}")
-        return self._imported(path.relative_to(self.root).with_suffix("").parts, self.relative(path))
+        return self._drawing_module(self.lesson_place / f"{name}.py", f"the lesson {name} draws no figures: ")
 
     def book_module(self, name: str) -> ModuleType:
         """Import a module that draws figures of the book, ``exercises/book/NAME.py``.
@@ -444,9 +426,11 @@ class Folder:
         BadCourse
             There is none, or it cannot be imported.
         """
-        path = self.book_place / f"{name}.py"
+        return self._drawing_module(self.book_place / f"{name}.py")
+
+    def _drawing_module(self, path: Path, lacks: str = "") -> ModuleType:
         if not path.exists():
-            raise BadCourse(f"there is no {self.relative(path)}")
+            raise BadCourse(f"{lacks}there is no {self.relative(path)}")
         return self._imported(path.relative_to(self.root).with_suffix("").parts, self.relative(path))
 
     def _imported(self, steps: Sequence[str], source: str) -> ModuleType:
@@ -457,6 +441,18 @@ class Folder:
             raise BadCourse(f"{source}: {_line_of(fault, self.root)}{fault}") from fault
         except Exception as fault:
             raise BadCourse(f"{source} cannot be used: {_where(fault, self.root)}") from fault
+
+
+def _toml(path: Path, said: str) -> Mapping[str, Any]:
+    """Return the content of a file of TOML, called so in messages; empty where there is none."""
+    import tomllib
+
+    if not path.exists():
+        return {}
+    try:
+        return tomllib.loads(path.read_text("utf-8-sig"))
+    except (ValueError, RecursionError) as fault:
+        raise BadCourse(f"{said}: {fault}") from fault
 
 
 def is_mechanism(path: Path) -> bool:

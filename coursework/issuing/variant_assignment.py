@@ -157,10 +157,12 @@ class _Assigner:
             )
         self._records: dict[tuple[str, str, int], Mapping[str, Any]] = {}
         self._letters: dict[str, str] = {}
+        self._sittings: dict[str, int] = {}
         for number, item in enumerate(self._items):
             name = str(item.get("student", "")) or f"#{number // max(1, len(assignment.names))}"
             key = name, str(item["record"]["exercise"]), int(item.get("sitting", 1))
             self._records[key] = item["record"]
+            self._sittings[name] = max(key[2], self.sittings(name))
             if item.get("version"):
                 self._letters[name] = str(item["version"])
 
@@ -185,7 +187,8 @@ class _Assigner:
         issued = list(dict.fromkeys(name for name, _, _ in self._records if not name.startswith("#")))
         there = {folded(s.name): s for s in students}
         gone = [name for name in issued if folded(name) not in there]
-        late = [s for s in students if s.name and folded(s.name) not in set(map(folded, issued))]
+        known = set(map(folded, issued))
+        late = [s for s in students if s.name and folded(s.name) not in known]
         if issued and gone:
             self.notes.append(
                 Message(
@@ -214,11 +217,12 @@ class _Assigner:
         return result + [s for s in students if not s.name]
 
     def sittings(self, name: str) -> int:
-        return max((n for student, _, n in self._records if student == name), default=1)
+        return self._sittings.get(name, 1)
 
     def codes(self, everybody: Sequence[Student]) -> dict[str, str]:
         """Return the code of each student: as issued, else drawn by the secret; all differ."""
-        codes = {name: code for name, code in self._codes.items() if any(s.name == name for s in everybody)}
+        names = {student.name for student in everybody}
+        codes = {name: code for name, code in self._codes.items() if name in names}
         used = set(codes.values())
         for student in (s for s in everybody if s.name and s.name not in codes):
             tries = (_code(self._key.digest("code", student.draw_key, str(k))) for k in range(1000))
@@ -246,7 +250,8 @@ class _Assigner:
         used = Counter(letter_of.values())
         order = [self.of(s) for s in everybody]
         neighbours = _neighbours([s for s in roster if s.name] or everybody, self.of)
-        for student in sorted(order, key=lambda name: _place(name, roster, self.of)):
+        places = {folded(self.of(s)): k for k, s in reversed([*enumerate(roster)])}
+        for student in sorted(order, key=lambda name: places.get(folded(name), len(roster))):
             if student in letter_of:
                 continue
             near = {letter_of.get(other) for other in neighbours.get(student, ())}
@@ -392,10 +397,6 @@ def distributed_points(total: float, parts: Sequence[Part]) -> dict[str, float]:
 
 
 # ------------------------------------------------------------------------- room
-
-
-def _place(name: str, roster: Sequence[Student], of: Any) -> int:
-    return next((k for k, s in enumerate(roster) if folded(of(s)) == folded(name)), len(roster))
 
 
 def _neighbours(roster: Sequence[Student], of: Any) -> dict[str, set[str]]:

@@ -24,12 +24,12 @@ def wide_form(
     papers: dict[tuple[str, int], dict[str, Any]] = {}
     exercises: dict[str, dict[str, tuple[int, str]]] = {}  #: by part: number of the question, and unit
     for issue in issues:
-        name, cells = issue.variant.exercise.name, {folded(t): value for t, value in issue.columns.items()}
-        named = {"student": issue.shown, "version": issue.version}
-        row = papers.setdefault(
-            (issue.stem, issue.sitting), {**{t: cells.get(folded(t), "") for t in identity}, **named}
-        )
-        row[f"{name} seed"] = issue.variant.seed
+        name, paper = issue.variant.exercise.name, (issue.stem, issue.sitting)
+        if paper not in papers:
+            cells = {folded(t): value for t, value in issue.columns.items()}
+            papers[paper] = {t: cells.get(folded(t), "") for t in identity}
+            papers[paper] |= {"student": issue.shown, "version": issue.version}
+        papers[paper][f"{name} seed"] = issue.variant.seed
         for number, part in enumerate(issue.variant.parts, 1):
             unit = units_text(part, issue.langs[0], issue.variant)
             exercises.setdefault(name, {}).setdefault(part.id, (number, f" ({unit})" if unit else ""))

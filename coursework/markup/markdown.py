@@ -231,12 +231,9 @@ FOUND = ("#word", "#machine")
 
 
 def _typst_link(href: str, title: str, inside: str) -> str:
-    if href == INDEX:
-        return f"#term({typst_string(title)}, {typst_string(bare_letters(title))})[{inside}];"
-    if href in FOUND:
-        return (
-            f'#indexed("{href[1:]}", {typst_string(title)}, {typst_string(bare_letters(title))})[{inside}];'
-        )
+    if href == INDEX or href in FOUND:
+        begin = "#term(" if href == INDEX else f'#indexed("{href[1:]}", '
+        return f"{begin}{typst_string(title)}, {typst_string(bare_letters(title))})[{inside}];"
     if href.startswith("#") and title:  # a place of the book, with what paper calls it
         return f"#cited({typst_string(unquote(href[1:]))}, [{inside}], {typst_string(title)});"
     position = f"label({typst_string(unquote(href[1:]))})" if href.startswith("#") else typst_string(href)
@@ -322,15 +319,13 @@ def _html_reader(lang: str) -> MarkdownIt:
 
     def link(renderer: RendererHTML, tokens: Sequence, at: int, options: Any, env: Any) -> str:
         opening = next(t for t in reversed(tokens[: at + 1]) if t.type == "link_open")
-        if opening.attrs.get("href") in FOUND:
-            if tokens[at].nesting != 1:
-                return "</span>"
-            return f'<span id="{anchor(str(opening.attrs.get("title", "")))}">'
-        if opening.attrs.get("href") != INDEX:
+        href = opening.attrs.get("href")
+        if href != INDEX and href not in FOUND:
             return renderer.renderToken(tokens, at, options, env)
+        tag = "dfn" if href == INDEX else "span"
         if tokens[at].nesting != 1:
-            return "</dfn>"
-        return f'<dfn id="{anchor(str(opening.attrs.get("title", "")))}">'
+            return f"</{tag}>"
+        return f'<{tag} id="{anchor(str(opening.attrs.get("title", "")))}">'
 
     reader = MarkdownIt("commonmark", {"html": False}).enable("table")
     reader.use(dollarmath_plugin, allow_digits=True, double_inline=True)

@@ -23,6 +23,7 @@ from coursework.rendering.surface import surface
 from coursework.sheets.book import BlanksPiece, Book, BookChapter, BookExercise, LessonText, Piece
 from coursework.sheets.paper import Paper, PaperHeading, SolutionPaper
 
+_MARKS = {TERM: INDEX, WORD: f"#{WORD}", MACHINE: f"#{MACHINE}"}  #: where the marks of the index lead to
 _TALL = 78  #: mm that a drawing of a lesson takes at most
 
 # -------------------------------------------------------------------------- PDF
@@ -97,10 +98,8 @@ def _typst_pieces(
     )
 
     def write(link: TextLink) -> str:
-        if link.kind == TERM:
-            return f'[{link.said}]({INDEX} "{typeset(link.name, book.lang)}")'
-        if link.kind in (WORD, MACHINE):
-            return f'[{link.said}](#{link.kind} "{typeset(link.name, book.lang)}")'
+        if link.kind in _MARKS:
+            return f'[{link.said}]({_MARKS[link.kind]} "{typeset(link.name, book.lang)}")'
         if link.name not in here[link.kind == "lesson"]:
             return link.said
         section = f"-{link.section}" if link.section else ""
@@ -318,13 +317,10 @@ class LessonPages:
         return Markup(render(self._env, "book/_pieces.html.j2", {**self._names, "pieces": shown}))
 
     def _written(self, link: TextLink) -> str:
-        if link.kind == TERM:
-            is_first = link.name not in self._met
+        if link.kind in _MARKS:
+            if link.name in self._met:
+                return f"*{link.said}*" if link.kind == TERM else link.said
             self._met.add(link.name)
-            return f'[{link.said}]({INDEX} "{link.name}")' if is_first else f"*{link.said}*"
-        if link.kind in (WORD, MACHINE):
-            is_first = link.name not in self._met
-            self._met.add(link.name)
-            return f'[{link.said}](#{link.kind} "{link.name}")' if is_first else link.said
+            return f'[{link.said}]({_MARKS[link.kind]} "{link.name}")'
         address = self._address(link)
         return f"[{link.said}]({address})" if address else link.said

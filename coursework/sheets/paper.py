@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from coursework.language.words import words
 from coursework.sheets.answer_pages import AnswerPage
 from coursework.sheets.sheet import AnswerSheet, FeedbackSheet, Handout
 
@@ -36,6 +37,12 @@ class PaperHeading:
     cover: bool = False  #: a page of its own
     mark_of: str = ""  #: what the mark is out of, as printed; empty where only points count
     is_code: bool = False  #: a code stands in place of the name
+
+    @property
+    def name_word(self) -> str:
+        """The word before the name, or before the code that stands in its place."""
+        texts = words(self.lang)
+        return str(texts["exam"]["code"] if self.is_code else texts["sheet"]["name"])
 
 
 @dataclass(frozen=True)

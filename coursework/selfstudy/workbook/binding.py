@@ -15,7 +15,13 @@ from coursework.course.variant import Variant
 from coursework.errors import BadCourse, BadInput
 from coursework.issuing.issuing import distinct_variants
 from coursework.language.words import words
-from coursework.selfstudy.workbook.concordance import entries_of, machine_entries, see_entries, with_entries
+from coursework.selfstudy.workbook.concordance import (
+    SoughtEntry,
+    entries_of,
+    machine_entries,
+    see_entries,
+    with_entries,
+)
 from coursework.selfstudy.workbook.drills import drills_of, judgements_of
 from coursework.selfstudy.workbook.lessons import lesson_text
 from coursework.selfstudy.workbook.matter import matter_of, title_page
@@ -82,8 +88,9 @@ def bound(
                 value=", ".join(map(str, numbers)) or "none",
             )
     wanted = [chapter for chapter in results if not chapters or chapter.number in chapters]
-    created = tuple(_chapter(course, chapter, lang, seed, advance) for chapter in wanted)
     folder = course.folder
+    sought = entries_of(folder, lang)
+    created = tuple(_chapter(course, chapter, lang, seed, sought, advance) for chapter in wanted)
     front, back = (matter_of(folder, lang, place) for place in ("front", "back"))
     return Book(
         lang,
@@ -118,11 +125,15 @@ def chapters_of(course: Course[Any], lang: str) -> Iterator[Chapter]:
 
 
 def _chapter(
-    course: Course[Any], chapter: Chapter, lang: str, seed: int, advance: Callable[[], object]
+    course: Course[Any],
+    chapter: Chapter,
+    lang: str,
+    seed: int,
+    sought: Sequence[SoughtEntry],
+    advance: Callable[[], object],
 ) -> BookChapter:
     sections = []
     count = 0
-    sought = entries_of(course.folder, lang)
     for placed in chapter.sections:
         lesson = lesson_text(course, placed.lesson, lang) if placed.lesson else None
         if lesson:

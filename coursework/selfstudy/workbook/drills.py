@@ -117,11 +117,11 @@ def judgements_of(folder: Folder, lesson: LessonText) -> tuple[Judgement, ...]:
 
 
 def _variants(course: Course[Any], name: str, lang: str, seed: int) -> Sequence[Variant]:
-    variants = distinct_variants(course[name], _FAR + _APART * seed, _VARIANTS, lang)
-    sheet = handout(variants[0])
+    first = _FAR + _APART * seed
+    sheet = handout(distinct_variants(course[name], first, 1, lang)[0])
     # What is measured on a drawing takes longer than two minutes.
     drawn = any(q.is_open or q.kind not in _SHORT or q.box == "millimetre" for q in sheet.questions)
-    return () if drawn else variants
+    return () if drawn else distinct_variants(course[name], first, _VARIANTS, lang)
 
 
 def _fill(
