@@ -9,6 +9,7 @@ from hashlib import sha256
 from typing import Any, TypeVar
 
 from coursework.course.course import Course
+from coursework.database.coded import by_code, coded_graded, coded_row, coded_sheets, codes_of
 from coursework.database.instructor_queries import AssignmentOverview, Placing, SiteSubmissions, Stamp
 from coursework.errors import closest
 from coursework.gradebook.book import Gradebook, Result, Sitting, results
@@ -26,7 +27,7 @@ from coursework.gradebook.waiting import (
     groups,
     margins_of,
 )
-from coursework.issuing.issued import CODE, Issued
+from coursework.issuing.issued import Issued
 from coursework.issuing.students import namesakes
 from coursework.messages import localised
 
@@ -123,6 +124,35 @@ class ClassState:
         part.__dict__["graded"] = of_them(self.graded)
         part.__dict__["adjusted"] = self.adjusted.among(students)
         part.__dict__["codes"] = {name: code for name, code in self.codes.items() if name in students}
+        return part
+
+    @cached_property
+    def coded(self) -> ClassState:
+        """Class as its tables and files tell of it: by codes, in their order, where these stand in place of names."""
+        if not self.codes:
+            return self
+
+        codes = self.codes
+        part = replace(
+            self,
+            issued=self.issued.by_codes(codes),
+            sheets=coded_sheets(self.sheets, codes, self._named_by),
+            faults=by_code(self.faults, codes),
+            charged=by_code(self.charged, codes),
+        )
+        graded = by_code(self.graded, codes)
+        part.__dict__["graded"] = {key: coded_graded(one, codes) for key, one in graded.items()}
+        part.__dict__["adjusted"] = self.adjusted.by_codes(codes)
+        part.__dict__["codes"], part.__dict__["coded"] = codes, part
+        part.__dict__["rejected"] = tuple(
+            replace(
+                one,
+                row=coded_row(one.row, one.student, codes),
+                student=self.shown(one.student),
+                near_of=lambda name: "",
+            )
+            for one in self.rejected
+        )
         return part
 
     @cached_property
@@ -248,11 +278,14 @@ class ClassState:
         return answers + sum(row.waits for row in self.named)
 
     @cached_property
+    def all_codes(self) -> Mapping[str, str]:
+        """Codes on the papers of an anonymous assignment, by student."""
+        return codes_of(self.issued)
+
+    @cached_property
     def codes(self) -> Mapping[str, str]:
         """Codes that stand in place of names, by student: of an anonymous assignment, until nothing waits any more."""
-        if not (self.issued.assignment or {}).get("anonymous") or not self.waiting:
-            return {}
-        return {student: cells[CODE] for student, cells in self.issued.columns.items() if CODE in cells}
+        return self.all_codes if self.waiting else {}
 
     def shown(self, student: str) -> str:
         """Return what a page shows of a student: the code, else the name."""

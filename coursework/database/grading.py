@@ -3,7 +3,7 @@ submissions so far."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from pathlib import Path
@@ -12,16 +12,18 @@ from sqlalchemy import Connection
 
 from coursework.course.course import Course
 from coursework.database.assignments import issued_of
+from coursework.database.coded import by_code, coded_graded, coded_sheets, codes_of
 from coursework.database.decisions import read_decisions, remember_written, store_new_decisions
-from coursework.database.marking import MarkedNow, Work, mark_and_store
+from coursework.database.marking import Judged, MarkedNow, Work, mark_and_store
 from coursework.database.publication import late_penalties
 from coursework.database.store import Store
 from coursework.database.submissions import Submission, insert_submission
 from coursework.errors import BadInput
 from coursework.gradebook.book import Gradebook
 from coursework.gradebook.class_marking import rejecting
-from coursework.gradebook.decisions import DecisionFiles
+from coursework.gradebook.decisions import DecisionFiles, Decisions
 from coursework.gradebook.feedback_form import USUAL, FeedbackForm, shows_solutions
+from coursework.gradebook.graded_sheet import Graded
 from coursework.gradebook.grading import nothing_in, usual_feedback, write_marks
 from coursework.gradebook.rows import Rejected, path_text
 from coursework.gradebook.submissions import find, read_file
@@ -65,9 +67,9 @@ def grade_new(
         A file that is not there, nothing that can be marked, more points than there are, solutions before their day; then
         nothing is kept.
     """
-    files = DecisionFiles(out, accepted)
     with store.begin() as connection:
         issued = issued_of(connection, assignment_id)
+        files = DecisionFiles(out, accepted, issued.renamed)
         shows_solutions(issued, form)
         submitted = _store_submissions(connection, assignment_id, submissions, replaces=replaces)
         work = Work(course, store, assignment_id, within=connection)
@@ -109,17 +111,33 @@ def write_standing(
     form: FeedbackForm = USUAL,
 ) -> Gradebook:
     """Write the files that :func:`coursework.gradebook.grading.grade_files` would write for all submissions
-    so far."""
+    so far: of an anonymous assignment by codes, as long as an answer waits."""
     with store.reading() as connection:
         decisions = read_decisions(connection, work.assignment_id)
         charged = late_penalties(connection, work.assignment_id)
+    issued, sheets = work.issued, work.sheets
+    results: Iterable[Judged] = work.results()
+    if (codes := codes_of(issued)) and _waits(work, decisions):
+        results = [
+            (
+                (codes.get(key[0], key[0]), *key[1:]),
+                coded_graded(one, codes) if isinstance(one, Graded) else one,
+            )
+            for key, one in results
+        ]
+        results.sort(key=lambda judged: judged[0][0])
+        issued, charged = issued.by_codes(codes), by_code(charged, codes)
+        sheets = coded_sheets(
+            sheets, codes, lambda row: work.issued.student(row.row.get("student", "")) or ""
+        )
+        decisions = decisions.renamed(issued.renamed)
     book = write_marks(
         course,
-        work.issued,
-        work.sheets,
-        rejecting(work.sheets, work.results()),
+        issued,
+        sheets,
+        rejecting(sheets, results),
         out,
-        files=DecisionFiles(out, accepted),
+        files=DecisionFiles(out, accepted, issued.renamed),
         decisions=decisions,
         feedback=usual_feedback(work.sheets) if feedback is None else feedback,
         charged=charged,
@@ -128,5 +146,12 @@ def write_standing(
         form=form,
     )
     with store.begin() as connection:
-        remember_written(connection, work.assignment_id, DecisionFiles(out))
+        remember_written(connection, work.assignment_id, DecisionFiles(out, renamed=work.issued.renamed))
     return book
+
+
+def _waits(work: Work, decisions: Decisions) -> bool:
+    """Return True if something of an assignment waits for a person."""
+    return bool(work.sheets.rejected) or any(
+        isinstance(one, str) or decisions.apply(one).open for _, one in work.results()
+    )

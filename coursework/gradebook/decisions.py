@@ -63,6 +63,10 @@ class Decisions:
             else:
                 self.steps.append(decision)
 
+    def renamed(self, name_of: Callable[[str], str]) -> Decisions:
+        """Return the decisions under other names of their students."""
+        return Decisions([*(one._replace(student=name_of(one.student)) for one in self.own), *self.steps])
+
     @cached_property
     def standing_steps(self) -> tuple[Decision, ...]:
         """Steps that are not taken back: a withdrawal takes back the last one on the same place."""

@@ -92,7 +92,10 @@ class Issued:
         self.exercises = tuple(dict.fromkeys(exercise for exercise, _ in self.records))
         listed = self.columns if self.is_pool and self.has_roster else ()
         self.students = tuple(dict.fromkeys((*(student for student, _ in self._sittings), *listed)))
-        self._codes = {code_key(code): name for name, code in _codes(content, source).items()}
+        codes = _codes(content, source) or {
+            s: cells[CODE] for s, cells in self.columns.items() if CODE in cells
+        }
+        self._codes = {code_key(code): name for name, code in codes.items()}
         self._shown: dict[str, str] = {}  #: codes in place of names
         self.has_sittings = any(max(seeds) > 1 for seeds in self._sittings.values())
         self._named = frozenset(self.students)
@@ -117,6 +120,12 @@ class Issued:
         # In the order of the codes: that of the roster would tell who is who.
         self.students = tuple(sorted(codes.get(s, s) for s in self.students))
         self._named = frozenset(codes.values())
+
+    def by_codes(self, codes: Mapping[str, str]) -> Issued:
+        """Return the record with codes in place of names, by student."""
+        coded = copy(self)
+        coded._show(codes)
+        return coded
 
     @property
     def is_anonymous(self) -> bool:

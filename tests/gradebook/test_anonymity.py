@@ -118,3 +118,25 @@ def test_names_are_refused_where_papers_bear_them(exam, capsys):
     answers = typed(out, {"Bo Diddley": ["1", "2", "3"]})
     assert command("grade", answers, "--issued", out / "issued.json", "--names") == 2
     assert "no anonymity to lift" in capsys.readouterr().err
+
+
+def test_a_database_writes_codes_until_nothing_waits(exam, tmp_path):
+    """A decision by code in the files that it wrote is one on the student."""
+    command, out = exam
+    codes = json.loads((out / "issued.json").read_text())["codes"]
+    key = {(k["student"], k["part"]): k["value"] for k in table(out / "instructor" / "key.csv")}
+    ada = codes["Ada Lovelace"]
+    url, marks = f"sqlite:///{tmp_path}/marks.db", tmp_path / "marks"
+    answers = typed(out, {ada: [key[ada, "x"], key[ada, "y"], "three apples"]})
+    with_db = ("grade", "--db", url, "--out", marks, "--issued", out / "issued.json")
+    assert command(*with_db, answers) == 1
+    for path in (*marks.glob("*.csv"), *marks.rglob("*.pdf")):
+        shown = path.name + (path.read_text("utf-8-sig") if path.suffix == ".csv" else "")
+        assert not [name for name in NAMES if name.lower() in shown.lower()], path
+    assert {row["student"] for row in table(marks / "marks.csv")} == {ada}
+    (marks / "decisions.csv").write_text(
+        f"student,exercise,seed,part,points,reason\n{ada},crank_pin,,v,1,units\n"
+    )
+    assert command(*with_db, "--no-feedback") == 0
+    (row,) = (row for row in table(marks / "marks.csv") if row["part"] == "v")
+    assert (row["student"], row["points"], row["verdict"]) == ("Ada Lovelace", "1", "accepted")

@@ -1,13 +1,18 @@
 """An anonymous class on the desk: codes in place of names on queue, class page and student page, until nothing waits."""
 
+import io
 import re
+import zipfile
 
 import pytest
 from desk_class import EXERCISE, STUDENTS, DeskClass, field
+from pdf_text import page_texts
 from site_people import TEACHER
 
 from coursework.database.assignments import issued_content, put_issued
 from coursework.database.current_marks import graded
+from coursework.gradebook.rows import AnswerRow
+from coursework.site.application import ROUTES
 
 CODES = dict(zip(STUDENTS, ("XYZ-222", "K7M-3XP", "CCC-777", "HHH-333", "RRR-444", "NNN-555"), strict=True))
 
@@ -69,3 +74,48 @@ def test_a_class_goes_by_codes_until_nothing_waits(desk):
     assert "Ada" in names_in(desk.page(TEACHER))
     assert "XYZ-222" not in desk.page(TEACHER).text
     assert page_of(desk, "Ada").status_code == 200
+
+
+def said(name, data):
+    """Names and texts of what is downloaded, of the members of an archive too."""
+    if data.startswith(b"PK"):
+        with zipfile.ZipFile(io.BytesIO(data)) as archive:
+            for member in archive.namelist():
+                yield from said(f"{name}/{member}", archive.read(member))
+    else:
+        yield name, "".join(page_texts(data)) if data.startswith(b"%PDF") else data.decode("utf-8")
+
+
+def outputs(number):
+    """Every address of the desk that tells of one class."""
+    about = {"student": "?name=XYZ-222", "question": f"?exercise={EXERCISE}&part=rA"}
+    tables = ("marks.csv", "summary.csv", "rejected.csv", "decisions.csv", "answers.csv", "archive.zip")
+    paths = {r.path for r in ROUTES if r.path.startswith("/desk/{assignment:int}")}
+    for path in sorted(path.replace("{assignment:int}", str(number)) for path in paths):
+        for table in tables if "{file}" in path else ("",):
+            yield path.replace("{file}", table) + about.get(path.rpartition("/")[2], "")
+
+
+def test_no_output_of_the_desk_tells_names_until_nothing_waits(desk):
+    """But the record, which tells whose a code is: of those who may publish alone."""
+    desk.hand_in({}, AnswerRow("Ada", EXERCISE, "7", "rA", "99", "more.csv, line 2"))
+    form = {
+        "name": "XYZ-222",
+        "exercise": EXERCISE,
+        "seed": "42",
+        "sitting": "1",
+        "part": "rA",
+        "do": "accept",
+    }
+    browser = desk.browser(TEACHER)
+    browser.fill(f"/desk/{desk.number}/student", form)
+    known = re.compile(rf"(?<![A-Za-z])(?:{'|'.join(STUDENTS)})\b|\b4000\b|@example\.org", re.IGNORECASE)
+    told, met = {}, []
+    for address in outputs(desk.number):
+        for name, text in said(address, browser.get(address).content):
+            met += [name] if "XYZ-222" in text or "xyz-222" in name else []
+            if found := known.search(f"{name}\n{text}".replace(TEACHER, "")):
+                told[name] = text[max(0, found.start() - 60) : found.end() + 40]
+    assert told == {}
+    ends = {name.rpartition("/")[2] for name in met}
+    assert {"marks.csv", "summary.csv", "rejected.csv", "decisions.csv", "answers.csv", "xyz-222.pdf"} <= ends

@@ -51,7 +51,7 @@ def files_page(
     request: Request, messages: Sequence[str] = (), filled: Filled | None = None, name: str = ""
 ) -> Response:
     """Return the page of uploads and downloads."""
-    now = class_here(request)
+    now = class_here(request).coded
     with request.site.store.reading() as connection:
         submissions = submissions_of(connection, now.about.id)
     files = [
@@ -61,7 +61,7 @@ def files_page(
     ]
     return class_page_of(
         request, now, "site/instructor/files", "files", told=list(messages), files=files[::-1][:50], rejected=now.rejected,
-        platforms=PLATFORMS.values(), scores=SCORES, downloads=list(_tables(now)), filled=_filled(request, filled, name),
+        platforms=PLATFORMS.values(), scores=SCORES, downloads=list(_tables(request, now)), filled=_filled(request, filled, name),
     )  # fmt: skip
 
 
@@ -199,7 +199,11 @@ def _shows(now: ClassState, student: str) -> bool:
 
 def _decided(request: Request, now: ClassState) -> bytes:
     with request.site.store.reading() as connection:
-        decisions = [one for one in decided_since(connection, now.about.id, 0) if _shows(now, one.student)]
+        decisions = [
+            one._replace(student=student)
+            for one in decided_since(connection, now.about.id, 0)
+            if _shows(now, student := now.shown(one.student))
+        ]
     rows = (
         {**one._asdict(), "made": one.made and one.made.isoformat(timespec="seconds")} for one in decisions
     )
@@ -220,9 +224,9 @@ def _issued(request: Request, now: ClassState) -> bytes:
 def _answers(request: Request, now: ClassState) -> bytes:
     with request.site.store.reading() as connection:
         rows = [
-            row
+            row._replace(student=student) if now.codes and student else row
             for row in rows_of(connection, now.about.id)
-            if isinstance(row, AnswerRow) and _shows(now, now.issued.student(row.student) or "")
+            if isinstance(row, AnswerRow) and _shows(now, student := now.issued.student(row.student) or "")
         ]
     columns = (*COLUMNS, "sitting", "submitted", "source")
     answers = ({**as_texts(row), "source": row.source, **_origin(row)} for row in rows)
@@ -255,23 +259,28 @@ _TABLES: Mapping[str, Callable[[Request, ClassState], bytes]] = {
 }
 
 
-def _tables(now: ClassState) -> Mapping[str, Callable[[Request, ClassState], bytes]]:
-    """Return the makers of the tables of a class; of a part of it, those that name nobody else."""
-    return (
-        _TABLES if now.is_whole else {name: make for name, make in _TABLES.items() if name != "issued.json"}
-    )
+def _tables(request: Request, now: ClassState) -> Mapping[str, Callable[[Request, ClassState], bytes]]:
+    """Return the makers of the tables of a class; of a part of it, those that name nobody else. What tells whose a
+    code is goes to a publisher alone."""
+    tells_whose = not now.codes or request.user.may(Permission.ASSIGNMENTS_PUBLISH, now.about.id, "")
+    has_record = now.is_whole and tells_whose
+    return _TABLES if has_record else {name: make for name, make in _TABLES.items() if name != "issued.json"}
 
 
 def table(request: Request) -> Response:
-    """Return one table, or all of them in an archive."""
-    now = class_here(request)
-    name = str(request.path_params["file"])
+    """Return one table, or all of them in an archive, which tells of no code whose it is."""
+    now = class_here(request).coded
+    name, tables = str(request.path_params["file"]), _tables(request, now)
     if name == "archive.zip":
-        files = {member: make(request, now) for member, make in _tables(now).items()}
-        if now.is_whole:
+        files = {
+            member: make(request, now)
+            for member, make in tables.items()
+            if not (now.codes and member == "issued.json")
+        }
+        if now.is_whole and not now.codes:
             files["deliveries.csv"] = _submissions(request, now)
         return Download(zipped(files), "application/zip", f"{_safe(now.about.name)}.zip")
-    if name not in _tables(now):
+    if name not in tables:
         raise HTTPException("page", 404)
     kind = "application/json" if name.endswith(".json") else "text/csv; charset=utf-8"
     return Download(_TABLES[name](request, now), kind, name)
@@ -283,7 +292,7 @@ def _safe(name: str) -> str:
 
 def feedback(request: Request) -> Response:
     """Return the feedback of a student, or of all students in an archive."""
-    now = class_here(request)
+    now = class_here(request).coded
     only = request.query_params.get("student", "")
     selected = [graded for graded in now.graded.values() if not only or graded.student == only]
     if not selected:
@@ -323,6 +332,8 @@ def gradebook(request: Request) -> Response:
     """
     now = class_here(request)
     texts, form = request.words["files"], request.form
+    if now.codes:
+        raise BadInput(texts["by_codes"].format(now.waiting))
     sent = form.upload("template")
     if sent is None:
         raise BadInput(texts["none_sent"])

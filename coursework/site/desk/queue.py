@@ -98,7 +98,7 @@ def items(now: ClassState, filters: Filters) -> list[QueueItem]:
             1,
             row=entry,
         )
-        for entry in now.named
+        for entry in now.coded.named
         if entry.waits
     ]
     return [entry for entry in cards if filters.shows(entry.why, entry.exercise, entry.part)]

@@ -75,7 +75,9 @@ def _row(request: Request, now: ClassState, change: Change) -> ChangeRow:
     points_before, points_now = (localise(p, request.lang) for p in (change.points_before, change.points_now))
     is_less = _number(change.points_now) < _number(change.points_before)
     number = now.number(change.exercise, change.part)
-    return ChangeRow(change.student, number, change.answer, before, after, points_before, points_now, is_less)
+    return ChangeRow(
+        now.shown(change.student), number, change.answer, before, after, points_before, points_now, is_less
+    )
 
 
 def _questions(request: Request, now: ClassState, result: MarkedNow) -> list[tuple[str, int, int, str]]:

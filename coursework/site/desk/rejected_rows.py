@@ -75,7 +75,9 @@ def _decided(request: Request, now: ClassState, row: UnplacedRow) -> str:
         )
         request.note(connection, "row placed", assignment=now.about.id, row=row.id)
     mark_submission(request.site.course, request.site.store, submission.id)
-    return str(texts["placed_done"]).format(answer.student, now.number(answer.exercise, answer.part))
+    return str(texts["placed_done"]).format(
+        now.shown(answer.student), now.number(answer.exercise, answer.part)
+    )
 
 
 def _answer(request: Request, now: ClassState, row: UnplacedRow) -> AnswerRow:
@@ -94,7 +96,9 @@ def _answer(request: Request, now: ClassState, row: UnplacedRow) -> AnswerRow:
     sheet_key, sheet = max(sheets, key=lambda pair: pair[1].sitting) if sheets else (None, None)
     if sheet is not None and part in sheet.lines and sheet.lines[part].verdict != "missing":
         raise BadInput(
-            texts["place_taken"].format(student, now.number(exercise, part), sheet.lines[part].answer[:80])
+            texts["place_taken"].format(
+                now.shown(student), now.number(exercise, part), sheet.lines[part].answer[:80]
+            )
         )
     seeds = issued.seeds_of(student, exercise)
     seed = (

@@ -4,7 +4,7 @@ card by card."""
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -84,7 +84,14 @@ def _by_names(sent: list[Upload]) -> dict[str, bytes]:
 def _absent(now: ClassState, scans: ClassScans) -> list[str]:
     """Return the students with a paper of which no page was scanned."""
     met = set(scans.gathered.whose.values())
-    return [student for student in now.issued.students if student not in met]
+    return _shown(now, (student for student in now.issued.students if student not in met))
+
+
+def _shown(now: ClassState, students: Iterable[str]) -> list[str]:
+    """Return students as pages on scans show them: by their codes, in the order of these, in an anonymous assignment."""
+    if not now.all_codes:
+        return [*students]
+    return sorted(now.all_codes.get(student, student) for student in students)
 
 
 def cards_page(request: Request) -> Response:
@@ -155,11 +162,21 @@ def _card_response(
         "scans": scans,
         "told": message,
         "place_url": f"/desk/{now.about.id}/scans/queue",
-        "papers": [(code, p.student) for code, p in scans.papers.papers.items() if p.size == "a4"],
+        "papers": _papers(now, scans),
     }
     if request.is_fragment:
         return request.render("site/instructor/_scan_card", now=now, **names)
     return class_page_of(request, now, "site/instructor/scan_queue", "scans", **names)
+
+
+def _papers(now: ClassState, scans: ClassScans) -> list[tuple[str, str]]:
+    """Return the codes of the papers with their students, as pages on scans show them."""
+    papers = [
+        (code, now.all_codes.get(p.student, p.student))
+        for code, p in scans.papers.papers.items()
+        if p.size == "a4"
+    ]
+    return sorted(papers, key=lambda paper: paper[1]) if now.all_codes else papers
 
 
 def _scan_card(request: Request, now: ClassState, scans: ClassScans, card: AnswerCard) -> ScanCard:

@@ -113,7 +113,7 @@ def student_page(request: Request) -> Response:
         tries=[(moment(entry.received_at, request.lang), entry) for entry in tries], known=0 if now.codes else person or 0,
         sittings=[(n, list(group)) for n, group in groupby(sheets, key=lambda entry: entry.graded.sitting)],
         practised=[_practised(request, name, *alone[name]) for name in now.issued.exercises if name in alone],
-        rejected=[entry for entry in now.rejected if entry.student == student],
+        rejected=[entry for entry in now.coded.rejected if entry.student == now.shown(student)],
     )  # fmt: skip
 
 
