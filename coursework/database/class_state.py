@@ -12,6 +12,7 @@ from coursework.course.course import Course
 from coursework.database.coded import by_code, coded_graded, coded_row, coded_sheets, codes_of
 from coursework.database.instructor_queries import AssignmentOverview, Placing, SiteSubmissions, Stamp
 from coursework.errors import closest
+from coursework.gradebook.adjustments import NEUTRAL
 from coursework.gradebook.book import Gradebook, Result, Sitting, results
 from coursework.gradebook.class_marking import rejecting
 from coursework.gradebook.decisions import Decisions
@@ -260,9 +261,12 @@ class ClassState:
 
     @cached_property
     def open(self) -> dict[str, OpenGroup]:
-        """Groups with undecided answers, by id, in order; including those that are shown only on request."""
-        open_groups = {}
+        """Groups with undecided answers, by id, in order; including those that are shown only on request. Nothing of a
+        question that counts for nobody."""
+        open_groups, statuses = {}, self.decisions.adjustments.statuses
         for group in self.groups:
+            if statuses.get((group.exercise, group.part)) == NEUTRAL:
+                continue
             members = tuple(answer for answer in group.members if not self.is_decided(answer))
             if members:
                 open_groups[group.id] = OpenGroup(group, members)

@@ -118,7 +118,7 @@ class Preview:
     before: Distribution
     now: Distribution
 
-    @property
+    @cached_property
     def changes(self) -> list[MarkChange]:
         """Marks that change, those that fall first, then those that rise most."""
         changes = [
@@ -166,9 +166,14 @@ class Exam:
     def results(self, decisions: Decisions | None = None) -> dict[str, Result]:
         """Return the result of each student with these decisions, by default with those that stand."""
         if decisions is None:
-            sheets, decisions = self.decided, self.decisions
-        else:
-            sheets = [decisions.apply(graded) for graded in self.machine]
+            return self._standing_results
+        return self._results_with(decisions, [decisions.apply(graded) for graded in self.machine])
+
+    @cached_property
+    def _standing_results(self) -> dict[str, Result]:
+        return self._results_with(self.decisions, self.decided)
+
+    def _results_with(self, decisions: Decisions, sheets: Sequence[Graded]) -> dict[str, Result]:
         adjusted = decisions.adjustments.applied(sheets, self.issued, margins_of(self.course, self.issued))
         return self._results(adjusted, decisions.adjustments)
 

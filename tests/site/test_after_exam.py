@@ -94,3 +94,13 @@ def test_a_forged_form_changes_nothing(desk):
     asked = {"do": "confirm", "kind": "neutral", "question": QUESTION}
     assert browser.post(f"/desk/{desk.number}/after", data=asked).status_code == 403
     assert steps_of(desk) == ()
+
+
+def test_nothing_waits_in_a_question_that_counts_for_nobody(desk):
+    browser, asked = desk.browser(TEACHER), {"kind": "neutral", "question": f"{EXERCISE}/theta4"}
+    before = class_now(desk.site, desk.number).waiting
+    browser.fill(f"/desk/{desk.number}/after", {"do": "confirm", **asked})
+    assert class_now(desk.site, desk.number).waiting == before - 2
+    assert {entry.group.part for entry in class_now(desk.site, desk.number).open.values()} == {"rA"}
+    browser.fill(f"/desk/{desk.number}/after", {"do": "undo"})
+    assert class_now(desk.site, desk.number).waiting == before
