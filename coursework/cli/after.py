@@ -311,6 +311,8 @@ def _tell(exam: Exam, restated: Sequence[Decision], notes: Sequence[Message]) ->
     now = exam.distribution()
     present, names = len(now.marks), exam.issued.students or tuple(now.marks)
     click.echo(texts["handed_in"].format(len(names), present, len(exam.provisional)))
+    if any(exam.missing):
+        click.echo(texts["missing"].format(*exam.missing))
     click.echo(
         texts["marks"].format(said.number(now.mean, lang), said.number(now.of, lang), now.passed, present)
     )

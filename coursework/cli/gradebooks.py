@@ -89,6 +89,8 @@ def gradebook(
 
     chosen = platform_gradebook(platform)
     scored, status = _final(class_points(marks, score), provisional)
+    from coursework.gradebook.presence import EXCUSED
+
     if template is None:
         if platform != "moodle":
             raise BadInput(
@@ -96,7 +98,7 @@ def gradebook(
                 title_of_platform=chosen.title_of_platform,
                 download=chosen.download,
             )
-        final = [entry for entry in scored if entry.has_answered or zeros]
+        final = [entry for entry in scored if entry.is_marked or (zeros and entry.presence != EXCUSED)]
         return max(_write_xml(out, item, final, out_of), status)
     from coursework.gradebook.filling import fill
     from coursework.system.writing import write_whole

@@ -44,6 +44,7 @@ def semester(assignments: Sequence[str], out: Path, absent: str, decimal: str, a
     change has a star. Absent is who handed in nothing, unless attendance.csv beside the marks says otherwise.
     """
     from coursework.gradebook import semester as table
+    from coursework.gradebook.presence import ABSENT
     from coursework.system.tables import SPREADSHEETS, csv_file
     from coursework.system.writing import write_whole
 
@@ -59,7 +60,7 @@ def semester(assignments: Sequence[str], out: Path, absent: str, decimal: str, a
         say("{students} in {out}", students=counted(len(rows), "student"), out=out)
     statuses = [table.unsettled(line, read) for line in lines]
     waiting = sum(table.PROVISIONAL in status for status in statuses)
-    absences = sum(table.ABSENT in status for status in statuses)
+    absences = sum(ABSENT in status for status in statuses)
     if absences:
         warn("{students} with an absence", students=counted(absences, "student"))
     if waiting:

@@ -10,6 +10,7 @@ from coursework.errors import BadInput
 from coursework.gradebook.after import Exam
 from coursework.gradebook.class_marking import rejecting
 from coursework.gradebook.placing import Sheets
+from coursework.gradebook.presence import presence_on_roster
 
 
 def stored_exam(course: Course, store: Store, assignment_id: int) -> Exam:
@@ -32,4 +33,7 @@ def stored_exam(course: Course, store: Store, assignment_id: int) -> Exam:
     machine = list(rejecting(sheets, work.results()))
     with store.reading() as connection:
         charged = late_penalties(connection, assignment_id)
-    return Exam(course, work.issued, machine, work.decisions, tuple(sheets.rejected), charged)
+    presence = presence_on_roster(work.issued)
+    return Exam(
+        course, work.issued, machine, work.decisions, tuple(sheets.rejected), charged, presence=presence
+    )

@@ -18,6 +18,7 @@ from coursework.gradebook.class_marking import rejecting
 from coursework.gradebook.decisions import Decisions
 from coursework.gradebook.graded_sheet import Graded
 from coursework.gradebook.placing import SheetKey, Sheets
+from coursework.gradebook.presence import presence_on_roster
 from coursework.gradebook.questions import drawn_questions, number_of, questions_of
 from coursework.gradebook.rows import Rejected
 from coursework.gradebook.waiting import (
@@ -141,6 +142,7 @@ class ClassState:
             faults=by_code(self.faults, codes),
             charged=by_code(self.charged, codes),
         )
+        part.__dict__["presence"] = {self.shown(name): its for name, its in self.presence.items()}
         graded = by_code(self.graded, codes)
         part.__dict__["graded"] = {key: coded_graded(one, codes) for key, one in graded.items()}
         part.__dict__["adjusted"] = self.adjusted.by_codes(codes)
@@ -176,13 +178,18 @@ class ClassState:
         return self.decisions.adjustments.on(self.issued)
 
     @cached_property
+    def presence(self) -> dict[str, str]:
+        """Presence of students, where the columns of the roster state it."""
+        return presence_on_roster(self.issued)
+
+    @cached_property
     def book(self) -> Gradebook:
         """Gradebook of the class."""
         sheets = Sheets(self.sheets.sheets, list(self.sheets.rejected), list(self.sheets.warnings))
         book = Gradebook(
             self.adjusted, self.sheets.rows_in, self.sheets.blanks, sheets.rejected, sheets.warnings
         )
-        book.charged = self.charged
+        book.charged, book.presence = self.charged, self.presence
         book.aside = [row.row for row in self.rejected if not row.waits]
         both: dict[SheetKey, Graded | str] = {**self.graded, **self.faults}
         for graded in list(rejecting(sheets, ((p, both[p]) for p in sheets.sheets if p in both))):

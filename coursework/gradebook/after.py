@@ -18,6 +18,7 @@ from coursework.gradebook.adjustments import NEUTRAL, SPARED, STEP, WEIGHT, Adju
 from coursework.gradebook.book import Gradebook, Result, Sitting, results
 from coursework.gradebook.decisions import ACCEPTED, GIVEN, WITHDRAWN, Decision, Decisions, check_steps
 from coursework.gradebook.graded_sheet import WAITING, Graded
+from coursework.gradebook.presence import ABSENT, EXCUSED, PRESENT
 from coursework.gradebook.questions import drawn_questions, number_of, questions_of
 from coursework.gradebook.rows import Rejected
 from coursework.gradebook.scale import USUAL_SCALE, mark_on
@@ -148,6 +149,7 @@ class Exam:
     rejected: Sequence[Rejected] = ()
     charged: Mapping[Sitting, float] = field(default_factory=dict)
     measured: Mapping[tuple[str, str, int, int], Measure] | None = None
+    presence: Mapping[str, str] = field(default_factory=dict)  #: by student, where somebody stated it
     shown: Callable[[str], str] = str  #: name or code by which a student is named in what is told
 
     # -------------------------------------------------------------------- marks
@@ -178,11 +180,12 @@ class Exam:
         return self._results(adjusted, decisions.adjustments)
 
     def distribution(self, decisions: Decisions | None = None) -> Distribution:
-        """Return the marks of those who handed something in, by the scale with these decisions."""
+        """Return the marks of those who handed something in or were present, by the scale with these decisions."""
         adjustments = (decisions or self.decisions).adjustments
         stated = (adjustments.on(self.issued).assignment or {}).get("mark")
         scale = stated or {**USUAL_SCALE, "step": 0.01}
         present = {graded.student for graded in self.machine}
+        present |= {student for student, presence in self.presence.items() if presence == PRESENT}
         marks = {
             self.shown(student): float(mark_on(scale, result.counts, result.out_of) or 0)
             for student, result in self.results(decisions).items()
@@ -210,6 +213,13 @@ class Exam:
             self.shown(student): result.open for student, result in self.results().items() if result.open
         }
         return dict(sorted(waits.items()))
+
+    @property
+    def missing(self) -> tuple[int, int]:
+        """Number of students who are absent, and excused, where somebody stated it, and who handed nothing in."""
+        handed_in = {graded.student for graded in self.machine}
+        counts = Counter(its for student, its in self.presence.items() if student not in handed_in)
+        return counts[ABSENT], counts[EXCUSED]
 
     # --------------------------------------------------------------------- left
 

@@ -14,6 +14,7 @@ from coursework.gradebook.decisions import Decision, DecisionFiles
 from coursework.gradebook.edited_marks import EditedMarks
 from coursework.gradebook.feedback_form import FeedbackForm
 from coursework.gradebook.grading import write_marks
+from coursework.gradebook.presence import presence_by_student
 from coursework.issuing.issued import Issued
 from coursework.system.tables import SPREADSHEETS, delimiter_of, open_csv
 from coursework.system.writing import Progress
@@ -52,7 +53,12 @@ class MarkedFolder:
     def exam(self) -> Exam:
         """Marked exam with the decisions as they stand."""
         return Exam(
-            self.course, self.issued, self._machine, self.files.decisions, tuple(self._sheets.rejected)
+            self.course,
+            self.issued,
+            self._machine,
+            self.files.decisions,
+            tuple(self._sheets.rejected),
+            presence=presence_by_student(self.folder, self.issued),
         )
 
     def write(

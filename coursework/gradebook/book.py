@@ -18,6 +18,7 @@ from typing import Any
 from coursework.gradebook.columns import (
     LATE,
     MARK,
+    PRESENCE,
     PROVISIONAL,
     SITTING,
     SUBMITTED,
@@ -120,6 +121,7 @@ class Gradebook:
     charged: Mapping[Sitting, float] = field(
         default_factory=dict
     )  #: penalties of late submissions, as shares of the points
+    presence: Mapping[str, str] = field(default_factory=dict)  #: by student, where somebody stated it
     aside: Collection[Rejected] = ()  #: rejected rows that a person has put aside: nothing waits in them
 
     @property
@@ -308,8 +310,13 @@ def _number(points: float) -> float:
 def summary_table(book: Gradebook) -> tuple[Sequence[str], list[dict[str, Any]]]:
     """Return the columns and the lines of ``summary.csv``."""
     rows = list(summary_rows(book))
-    is_provisional = any(row[PROVISIONAL] for row in rows)
-    return summary_columns(book.issued, late=bool(book.charged), provisional=is_provisional), rows
+    columns = summary_columns(
+        book.issued,
+        late=bool(book.charged),
+        provisional=any(row[PROVISIONAL] for row in rows),
+        presence=any(row[PRESENCE] for row in rows),
+    )
+    return columns, rows
 
 
 def summary_rows(book: Gradebook) -> Iterator[dict[str, Any]]:
@@ -329,6 +336,7 @@ def summary_rows(book: Gradebook) -> Iterator[dict[str, Any]]:
             "out_of": f"{out_of:g}",
             LATE: f"{result.late:g}",
             PROVISIONAL: result.open or "",
+            PRESENCE: book.presence.get(student, ""),
             MARK: mark_of(issued, result.counts, out_of),
             "percent": f"{100 * result.counts / out_of:.1f}" if out_of else "",
             **{verdict: result.verdicts[verdict] for verdict in VERDICTS},

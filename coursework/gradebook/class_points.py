@@ -10,7 +10,8 @@ from typing import Any, NamedTuple
 
 from coursework.errors import BadInput, nearest
 from coursework.gradebook.changes import rows_of
-from coursework.gradebook.columns import LATE, PROVISIONAL, VERDICTS
+from coursework.gradebook.columns import LATE, PRESENCE, PROVISIONAL, VERDICTS
+from coursework.gradebook.presence import PRESENT
 from coursework.gradebook.scale import exact
 from coursework.issuing.identity import Ids, identifies
 from coursework.issuing.issued import codes_shown
@@ -30,6 +31,12 @@ class Scored(NamedTuple):
     out_of: str  #: of which they are; empty of what has its own scale
     has_answered: bool = True
     open: str = ""  #: number of answers that wait for a person; until then the points are provisional
+    presence: str = ""  #: where somebody stated it
+
+    @property
+    def is_marked(self) -> bool:
+        """True if the points are a mark: something was answered, or somebody present answered nothing."""
+        return self.has_answered or self.presence == PRESENT
 
     def of(self, most: float | None) -> str:
         """Return the points scaled to another total, rounded half up to hundredths; unchanged if the total is
@@ -113,4 +120,6 @@ def _scored(path: Path, score: str) -> Iterator[Scored]:
         ids = tuple((title, value) for title, value in row.items() if value and identifies(title))
         total = {"points": out_of, "percent": "100"}.get(score, "")
         answered = any(row.get(verdict, "0") != "0" for verdict in VERDICTS if verdict != "missing")
-        yield Scored(row["student"], ids, points, total, answered, row.get(PROVISIONAL, ""))
+        yield Scored(
+            row["student"], ids, points, total, answered, row.get(PROVISIONAL, ""), row.get(PRESENCE, "")
+        )

@@ -21,6 +21,7 @@ SUBMITTED = "submitted"  #: a column of the marks where a platform tells it
 REJECTED_COLUMNS = ("student", "exercise", "seed", "part", "answer", "source", "reason")
 MARK = "mark"
 PROVISIONAL = "provisional"  #: column of the summary where answers wait: their number, of whoever has some
+PRESENCE = "presence"  #: column of the summary where somebody stated who was present, absent or excused
 LATE = "late"  #: column of the summary if late submissions have a penalty
 
 
@@ -31,15 +32,18 @@ def marks_columns(issued: Issued, *, submitted: bool = False) -> tuple[str, ...]
     return (*MARKS_COLUMNS, *(column for column, there in more if there))
 
 
-def summary_columns(issued: Issued, *, late: bool = False, provisional: bool = False) -> tuple[str, ...]:
+def summary_columns(
+    issued: Issued, *, late: bool = False, provisional: bool = False, presence: bool = False
+) -> tuple[str, ...]:
     """Return the columns of ``summary.csv``: the usual ones with the identity, the exercises and the mark of
     an assignment among them, then those of the roster. With ``late``, a column for the penalty of late
     submissions; percent and mark are then those of the remaining points. With ``provisional``, one for the answers that
-    wait for a person."""
+    wait for a person; with ``presence``, one for the presence."""
     sitting = (SITTING,) if issued.has_sittings else ()
     student, points, out_of, *others = SUMMARY_COLUMNS
     others = [LATE, *others] if late else others
     others = [PROVISIONAL, *others] if provisional else others
+    others = [PRESENCE, *others] if presence else others
     if issued.assignment is None:
         return (student, points, out_of, *others, *sitting, *carried_columns(issued).values())
     mark = (MARK,) if issued.assignment.get("mark") else ()

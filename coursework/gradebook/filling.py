@@ -12,6 +12,7 @@ from typing import NamedTuple
 from coursework.errors import BadInput, nearest
 from coursework.gradebook.class_points import Scored
 from coursework.gradebook.platform_gradebooks import People, PlatformGradebook, people_in
+from coursework.gradebook.presence import EXCUSED
 from coursework.gradebook.rows import joined_by_and
 from coursework.issuing.identity import same_id, words_of
 from coursework.issuing.platform_rosters import TEST_STUDENT, first_name_first
@@ -71,7 +72,7 @@ def fill(
     sign = decimal or platform.decimal or _sign_in(sheet) or "."
     theirs = _matched(sheet, scored, result)
     for row, student, name in zip(sheet.rows, theirs, sheet.names, strict=True):
-        if student is None or not (student.has_answered or zeros):
+        if student is None or not (student.is_marked or (zeros and student.presence != EXCUSED)):
             result.absent.append(name)
         elif sheet.column >= len(row):
             raise BadInput(

@@ -34,6 +34,7 @@ from coursework.gradebook.feedback_sheets import renew_feedback
 from coursework.gradebook.graded_sheet import Graded
 from coursework.gradebook.placing import Sheets
 from coursework.gradebook.platform_files import platform_file_lines
+from coursework.gradebook.presence import presence_by_student
 from coursework.gradebook.rows import AnswerRow, PlatformFile, Rejected
 from coursework.gradebook.sheets_on_disk import placed_on_disk
 from coursework.gradebook.submissions import find, read_file
@@ -135,6 +136,7 @@ def write_marks(
     adjustments = decisions.adjustments
     book = Gradebook(adjustments.on(issued), sheets.rows_in, sheets.blanks, sheets.rejected, sheets.warnings)
     book.seen, book.charged = platform_file_lines(sheets.seen), charged or {}
+    book.presence = presence_by_student(out, issued)
     sheets_shown: list[Graded] = []
     with Tables(out, spreadsheet) as tables:
         marks = tables.open("marks.csv", marks_columns(issued, submitted=sheets.is_dated))

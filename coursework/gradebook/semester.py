@@ -12,22 +12,18 @@ from typing import Any, NamedTuple
 from coursework.errors import BadInput, bare_letters
 from coursework.gradebook.changes import rows_of
 from coursework.gradebook.class_points import Scored, class_points, issued_near
+from coursework.gradebook.presence import ABSENT, EXCUSED, PRESENT, presence_near
 from coursework.gradebook.scale import USUAL_SCALE, exact
 from coursework.issuing.exam_columns import group_of
-from coursework.issuing.identity import NUMBER, is_called, plain, same_id
+from coursework.issuing.identity import NUMBER, is_called, same_id
 from coursework.issuing.students import folded
 from coursework.language.numbers import typed_number
 from coursework.messages import Message
 
 OF = 20  #: maximum of marks and averages
-ABSENT, EXCUSED, PROVISIONAL, FINAL = "absent", "excused", "provisional", "final"
+PROVISIONAL, FINAL = "provisional", "final"
 #: What an absence is worth: nothing that can be averaged, 0, or as if excused.
 WORTH = ("none", "zero", "excused")
-_PRESENT = {
-    **dict.fromkeys(("present", "presente", "present(e)", "p", "x", "yes", "oui", "o", "1", "true", "vrai"), ""),
-    **dict.fromkeys(("absent", "absente", "absent(e)", "abs", "a", "abi", "no", "non", "n", "0", "defaillant"), ABSENT),
-    **dict.fromkeys(("excused", "excuse", "excusee", "excuse(e)", "abj", "justifie", "justifiee", "dispense", "dispensee"), EXCUSED),
-}  # fmt: skip
 
 
 class Assessed(NamedTuple):
@@ -38,14 +34,15 @@ class Assessed(NamedTuple):
     scored: Sequence[Scored]
     of: float  #: maximum of the marks
     groups: Mapping[str, str]  #: by student
-    presence: Mapping[str, str]  #: by student, where somebody stated it: "", absent or excused
+    presence: Mapping[str, str]  #: by student, where somebody stated it
 
     def result(self, scored: Scored) -> Assessment:
         """Return the result of a student: absent if nothing was handed in, unless the presence is stated."""
         mark = exact(typed_number(scored.points)) * OF / exact(self.of)
         if scored.has_answered:
             return Assessment(mark, PROVISIONAL if scored.open else "")
-        status = self.presence.get(folded(scored.name), ABSENT)
+        status = self.presence.get(folded(scored.name), scored.presence or ABSENT)
+        status = "" if status == PRESENT else status
         return Assessment(None if status else mark, status)
 
 
@@ -95,28 +92,8 @@ def assessed(marks: Path, weight: float, name: str = "") -> Assessed:
     groups = {folded(row["student"]): group for row in rows if (group := group_of(row))}
     folder = marks if marks.is_dir() else marks.parent
     name = name or (folder.resolve().parent if folder.resolve().name == "marks" else folder.resolve()).name
-    return Assessed(name, weight, scored, of, groups, _presence(folder))
-
-
-def _presence(folder: Path) -> dict[str, str]:
-    """Return what is filled in of the ``attendance.csv`` of a folder of marks or of its build."""
-    path = next((p for d in (folder, folder.parent) if (p := d / "attendance.csv").is_file()), None)
-    if path is None:
-        return {}
-    presence = {}
-    for number, row in enumerate(rows_of(path), start=2):
-        text = row.get("present", "").strip()
-        if not text:
-            continue
-        if plain(text) not in _PRESENT:
-            raise BadInput(
-                "{file}, line {number}: present is present, absent or excused; found {found!r}",
-                file=path,
-                number=number,
-                found=text[:40],
-            )
-        presence[folded(row.get("student", ""))] = _PRESENT[plain(text)]
-    return presence
+    presence = {folded(student): its for student, its in presence_near(folder).items()}
+    return Assessed(name, weight, scored, of, groups, presence)
 
 
 def semester(assignments: Sequence[Assessed]) -> list[SemesterLine]:

@@ -74,6 +74,7 @@ EXTRA_TIME = _titles(
     "extra time", "extra-time", "tiers temps", "tiers-temps", "1/3 temps", "temps majoré", "majoration de temps", "majoration",
     "temps supplémentaire", "temps additionnel",
 )  # fmt: skip
+PRESENCE = _titles("present", "présent", "presence", "présence")
 _PRINTED = {
     "number": (
         *_NUMBER_FIRST,

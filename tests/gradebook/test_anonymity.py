@@ -6,7 +6,10 @@ import json
 import pytest
 from small_assignment import table
 
+from coursework import open_course
 from coursework.cli import run
+from coursework.gradebook.after_files import MarkedFolder
+from coursework.gradebook.class_points import class_points
 from coursework.issuing.issued import Issued
 
 ROSTER = "student,number,group\nAda Lovelace,N9101,A\nBo Diddley,N9102,B\nCy Young,N9103,B\n"
@@ -140,3 +143,30 @@ def test_a_database_writes_codes_until_nothing_waits(exam, tmp_path):
     assert command(*with_db, "--no-feedback") == 0
     (row,) = (row for row in table(marks / "marks.csv") if row["part"] == "v")
     assert (row["student"], row["points"], row["verdict"]) == ("Ada Lovelace", "1", "accepted")
+
+
+def test_who_is_absent_has_no_zero(exam, small_course):
+    """Presence by name in the attendance list goes by code, and decides what a blank paper is worth."""
+    command, out = exam
+    issued, marks = out / "issued.json", out / "marks"
+    codes = json.loads(issued.read_text())["codes"]
+    key = {(k["student"], k["part"]): k["value"] for k in table(out / "instructor" / "key.csv")}
+    ada = codes[NAMES[0]]
+    answers = typed(out, {ada: [key[ada, part] for part in "xyv"]})
+    (out / "attendance.csv").write_text(
+        "student,present\nAda Lovelace,x\nBo Diddley,présente\nCy Young,absence\n"
+    )
+    assert command("grade", answers, "--issued", issued, "--no-feedback") == 2
+    (out / "attendance.csv").write_text(
+        "student,present\nAda Lovelace,x\nBo Diddley,présente\nCy Young,ABJ\n"
+    )
+    assert command("grade", answers, "--issued", issued, "--no-feedback", "--names") == 0
+    assert {row["student"]: row["presence"] for row in table(marks / "summary.csv")} == {
+        "Ada Lovelace": "present",
+        "Bo Diddley": "present",
+        "Cy Young": "excused",
+    }
+    scored = {one.name: one for one in class_points(marks, "points")}
+    assert [scored[name].is_marked for name in NAMES[:3]] == [True, True, False]
+    found = MarkedFolder(open_course(small_course), issued, marks).exam
+    assert (found.missing, sorted(found.distribution().marks)) == ((0, 1), ["Ada Lovelace", "Bo Diddley"])

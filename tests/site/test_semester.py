@@ -87,3 +87,21 @@ def test_a_group_is_shown_alone_and_an_assistant_sees_theirs(site):
     page = site.browser(CARA).get("/desk/semester", params=weights)
     assert not re.search(r"(?<!\w)Max(?!\w)", page.text)
     assert site.browser(ZOE).get("/desk/semester").status_code == 403
+
+
+def test_presence_on_the_roster_is_known_to_class_evening_and_semester(site):
+    """An attendance list sent as a roster: who is excused has no zero, who was present and wrote nothing has one."""
+    page, at = site.browser(TEACHER, "fr"), f"/desk/{site.of_max}"
+    answered = {
+        name
+        for name, row in lines(site, **{f"weight.{site.of_max}": "1"}).items()
+        if row["of Max"] != "absent"
+    }
+    assert MAX not in answered
+    for text, cell, told in (("ABJ", "excused", "dispensé"), ("présent", "0", "0")):
+        sent = {"roster": ("attendance.csv", f"student,present\n{MAX},{text}\n".encode())}
+        page.fill(f"{at}/roster", {}, files=sent)
+        assert lines(site, **{f"weight.{site.of_max}": "1"})[MAX]["of Max"] == cell
+        row = re.search(rf"<tr id=.*?{MAX}.*?</tr>", page.get(at).text, re.DOTALL)[0]
+        assert told in row
+    assert "presence" in page.get(f"{at}/files/summary.csv").text.splitlines()[0]

@@ -46,7 +46,15 @@ def exam_of(now: ClassState) -> Exam:
     rejected = tuple(row.row for row in now.rejected if row.waits)
     machine = tuple(now.machine.values())
     return Exam(
-        now.course, now.issued, machine, now.decisions, rejected, now.charged, now.measures, now.shown
+        now.course,
+        now.issued,
+        machine,
+        now.decisions,
+        rejected,
+        now.charged,
+        now.measures,
+        now.presence,
+        now.shown,
     )
 
 

@@ -31,6 +31,7 @@ from coursework.gradebook.adjustments import NEUTRAL, SPARED
 from coursework.gradebook.book import Result
 from coursework.gradebook.columns import own_columns
 from coursework.gradebook.graded_sheet import Graded
+from coursework.gradebook.presence import PRESENT
 from coursework.gradebook.scale import mark_of
 from coursework.issuing.students import folded
 from coursework.marking.mark import Mark
@@ -71,10 +72,16 @@ class ClassRow:
     open: int  #: answers that wait for a person; until then the mark is provisional
     counts: float  #: points on which the mark is based
     on_site: bool  #: handed in on the site, perhaps blank
+    presence: str = ""  #: where somebody stated it
 
     @property
     def has_answered(self) -> bool:
         return any(cell.sign not in ("", "missing") for cell in self.cells)
+
+    @property
+    def missed(self) -> str:
+        """Absent or excused, of somebody of whom that is known and who handed nothing in."""
+        return "" if self.handed_in or self.presence == PRESENT else self.presence
 
     @property
     def waits(self) -> int:
@@ -130,7 +137,7 @@ def _row(
         number, now.shown(student), identity, tuple(cells.get(question, BLANK) for question in now.questions),
         result.points, result.out_of, mark_of(now.adjusted, result.counts, result.out_of),
         tries, submitted.late if submitted else 0, bool(cells) or submitted is not None, result.open,
-        result.counts, submitted is not None,
+        result.counts, submitted is not None, now.presence.get(student, ""),
     )  # fmt: skip
 
 
@@ -274,7 +281,7 @@ def _content(now: ClassState) -> str:
     for row in table_rows:
         own = [cells.setdefault(cell, len(cells)) for cell in row.cells]
         rest = (
-            row.points, row.out_of, row.mark, row.tries, row.late, row.handed_in, row.open, row.counts, row.on_site,
+            row.points, row.out_of, row.mark, row.tries, row.late, row.handed_in, row.open, row.counts, row.on_site, row.presence,
         )  # fmt: skip
         lines.append([row.student, row.identity, own, *rest])
     questions = [[exercise, part, now.number(exercise, part)] for exercise, part in now.questions]

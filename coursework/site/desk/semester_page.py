@@ -18,6 +18,7 @@ from coursework.database.permissions import Permission, group_key
 from coursework.errors import BadInput
 from coursework.gradebook import semester
 from coursework.gradebook.class_points import Scored
+from coursework.gradebook.presence import PRESENT
 from coursework.gradebook.semester import Assessed, SemesterLine
 from coursework.issuing.identity import identifies
 from coursework.issuing.students import folded
@@ -168,10 +169,12 @@ def _assessed(table: ClassTable, students: frozenset[str] | None, weight: float)
         ids = tuple((title, value) for title, value in columns.items() if value and identifies(title))
         percent = 100 * row.counts / row.out_of if row.out_of else 0.0
         points = (row.mark or "0") if table.of else f"{percent:.10g}"
-        scored.append(Scored(row.student, ids, points, "", row.has_answered, str(row.open or "")))
+        scored.append(
+            Scored(row.student, ids, points, "", row.has_answered, str(row.open or ""), row.presence)
+        )
         groups[folded(row.student)] = group_of(columns)
         if row.on_site:
-            handed_in[folded(row.student)] = ""
+            handed_in[folded(row.student)] = PRESENT
     return Assessed(table.about.name, weight, scored, table.of or 100.0, groups, handed_in)
 
 
