@@ -10,6 +10,7 @@ from coursework.course.course import Course
 from coursework.course.secrecy import Secret
 from coursework.errors import BadInput
 from coursework.language.words import words
+from coursework.messages import language_of_messages
 from coursework.system.toml_files import toml_value
 from coursework.system.writing import write_whole
 
@@ -61,6 +62,7 @@ def new_assignment(
 
 def _head(stem: str, course: Course[Any], sheets: Sequence[str], langs: Sequence[str]) -> str:
     texts = {lang: words(lang)["assignment"] for lang in langs}
+    comments = words(language_of_messages())["assignment"]["comments"]
     title = _texts({lang: f"{s['title']} ({stem})" for lang, s in texts.items()})
     return "\n".join([
         f"title = {title}",
@@ -69,13 +71,13 @@ def _head(stem: str, course: Course[Any], sheets: Sequence[str], langs: Sequence
         '# duration = "1 h 30"',
         f"# instructions = {_texts({lang: s['instructions'] for lang, s in texts.items()})}",
         "# cover = true",
-        "# rules = true         # the usual rules of an exam",
-        "# work = 60            # mm of paper for the reasoning after each exercise",
-        "# anonymous = true     # codes in place of names",
-        "# attendance = true    # lists by room to sign; the roster has room, seat, extra_time",
+        f"# rules = true         # {comments['rules']}",
+        f"# work = 60            # {comments['work']}",
+        f"# anonymous = true     # {comments['anonymous']}",
+        f"# attendance = true    # {comments['attendance']}",
         "mark = { of = 20, step = 0.5 }",
-        'versions = "each"      # 4: versions A to D, dealt out; 1: the same for all',
-        '# identity = ["number", "group"]      # columns of the roster',
+        f'versions = "each"      # {comments["versions"]}',
+        f'# identity = ["number", "group"]      # {comments["identity"]}',
         '# roster = "class.csv"',
         f'lang = "{",".join(sheets)}"',
         f'out = "{stem}"',
