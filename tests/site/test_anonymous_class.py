@@ -119,3 +119,12 @@ def test_no_output_of_the_desk_tells_names_until_nothing_waits(desk):
     assert told == {}
     ends = {name.rpartition("/")[2] for name in met}
     assert {"marks.csv", "summary.csv", "rejected.csv", "decisions.csv", "answers.csv", "xyz-222.pdf"} <= ends
+
+
+def test_the_table_that_renews_itself_renews_codes_too(desk):
+    """Changes are told by names, rows by codes: the page is made anew."""
+    address = re.search(r'hx-get="(/desk/\d+/news[^"]*)"', desk.page(TEACHER).text)[1].replace("&amp;", "&")
+    browser = desk.browser(TEACHER)
+    assert browser.get(address).status_code == 204
+    desk.hand_in({"Di": {"rA": "trop long"}})
+    assert browser.get(address, follow_redirects=False).headers["location"] == f"/desk/{desk.number}"

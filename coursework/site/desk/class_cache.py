@@ -7,6 +7,7 @@ from collections import OrderedDict
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from datetime import timedelta
+from functools import cache, partial
 from threading import Lock, RLock
 from typing import Any
 from urllib.parse import urlencode
@@ -211,11 +212,12 @@ def _groups_here(request: Request, number: int) -> dict[str, str]:
 
 
 def class_page_of(request: Request, now: Any, template: str, tab: str, **names: Any) -> Response:
-    """Return an instructor's page of one assignment, under its heading; ``now`` is its state or its table."""
+    """Return an instructor's page of one assignment, under its heading; ``now`` is its state or its table. Groups are read
+    by the pages that offer them."""
     group = group_key(request.query_params.get(CLASS_GROUP, ""))
     return request.render(
         template, now=now, tab=tab, heading=assignment_title(now.about, request.lang), class_group=group,
-        class_groups=_groups_here(request, now.about.id), group_query=urlencode({CLASS_GROUP: group}) if group else "", **names,
+        class_groups=cache(partial(_groups_here, request, now.about.id)), group_query=urlencode({CLASS_GROUP: group}) if group else "", **names,
     )  # fmt: skip
 
 

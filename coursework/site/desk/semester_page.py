@@ -74,7 +74,7 @@ def semester_page(request: Request) -> Response:
         row["status"] = _status(request, titles, semester.unsettled(line, table.read))
     return request.render(
         "site/instructor/semester", table=table, page=page, rows=page.rows, titles=titles, worths=semester.WORTH,
-        columns=semester.columns_of(table.lines, table.read), class_groups=table.groups, class_group=table.group,
+        columns=semester.columns_of(table.lines, table.read), class_groups=lambda: table.groups, class_group=table.group,
         mean=localise(f"{sum(found) / len(found):.2f}", request.lang) if found else "", of=semester.OF, query=_query(request),
         number=lambda cell: localise(f"{cell:.10g}", request.lang) if isinstance(cell, (int, float)) else cell,
     )  # fmt: skip
