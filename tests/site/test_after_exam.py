@@ -6,6 +6,7 @@ import pytest
 from desk_class import EXERCISE, STUDENTS, DeskClass
 from site_people import TEACHER
 
+from coursework.database.assignments import issued_content, put_issued
 from coursework.database.decisions import read_decisions
 from coursework.site.desk.class_cache import class_now
 
@@ -104,3 +105,13 @@ def test_nothing_waits_in_a_question_that_counts_for_nobody(desk):
     assert {entry.group.part for entry in class_now(desk.site, desk.number).open.values()} == {"rA"}
     browser.fill(f"/desk/{desk.number}/after", {"do": "undo"})
     assert class_now(desk.site, desk.number).waiting == before
+
+
+def test_a_scale_gives_marks_to_an_assignment_that_stated_none(desk):
+    with desk.site.store.begin() as connection:
+        content = issued_content(connection, desk.number)
+        stated = {name: value for name, value in content["assignment"].items() if name != "mark"}
+        put_issued(connection, {**content, "assignment": stated})
+    assert ">Mark<" not in desk.page(TEACHER).text
+    desk.browser(TEACHER).fill(f"/desk/{desk.number}/after", {"do": "confirm", "kind": "full", "points": "2"})
+    assert ">Mark<" in desk.page(TEACHER).text

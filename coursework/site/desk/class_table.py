@@ -190,7 +190,8 @@ class ClassTable:
 
     @property
     def has_mark(self) -> bool:
-        return bool((self.about.stated or {}).get("mark"))
+        """True if the class has marks: by the assignment, or by a scale that was set after it."""
+        return self.of > 0
 
     @property
     def of(self) -> float:
