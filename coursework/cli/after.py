@@ -63,7 +63,11 @@ def _several(name: str, metavar: str, **more: Any) -> Callable[[Any], Any]:
 @_several("--spare", "QUESTION", help="Let a question count only for those whose mark it does not lower.")
 @_several("--bonus", "QUESTION", help="Add a question's points without counting it in the total.")
 @_several("--accept", "QUESTION=ANSWER", help="Accept an answer, whoever wrote it.")
-@_several("--refuse", "QUESTION=ANSWER", help="Give no points to an answer that waits, whoever wrote it.")
+@_several(
+    "--refuse",
+    "QUESTION[=ANSWER]",
+    help="Give no points to an answer that waits, whoever wrote it; without ANSWER to all that wait in the question.",
+)
 @_several("--tolerance", "QUESTION=FACTOR", help="Widen the accepted margin of a question: 2 doubles it.")
 @_several(
     "--price",
@@ -142,6 +146,9 @@ def after(
         steps.append(undoing(standing[-1], by, why))
     if put_away and not steps:
         say("no answer that waits says nothing")
+        return DONE
+    if asked["refuse"] and not steps:
+        say("no answer waits in these questions")
         return DONE
     if not steps:
         if feedback:
@@ -241,6 +248,9 @@ def _steps(exam: Exam, asked: Mapping[str, Any]) -> Iterator[Decision]:
             yield step(kind, *question_called(exam, place))
     for option, kind, points in (("accept", ACCEPTED, None), ("refuse", GIVEN, 0.0)):
         for text in asked[option]:
+            if kind == GIVEN and "=" not in text:
+                yield from exam.refusals(question_called(exam, text))
+                continue
             place, answer = _split(option, text)
             yield step(kind, *question_called(exam, place), points=points, answer=answer)
     for text in asked["price"]:
@@ -310,7 +320,8 @@ def _tell(exam: Exam, restated: Sequence[Decision], notes: Sequence[Message]) ->
     texts, colon = words(lang)["after"], words(lang)["sheet"]["colon"]
     now = exam.distribution()
     present, names = len(now.marks), exam.issued.students or tuple(now.marks)
-    click.echo(texts["handed_in"].format(len(names), present, len(exam.provisional)))
+    handed_in = len({graded.student for graded in exam.machine})
+    click.echo(texts["handed_in"].format(len(names), handed_in, len(exam.provisional)))
     if any(exam.missing):
         click.echo(texts["missing"].format(*exam.missing))
     click.echo(

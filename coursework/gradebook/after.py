@@ -300,6 +300,16 @@ class Exam:
             for one in self.non_answers
         ]
 
+    def refusals(self, question: Question) -> list[Decision]:
+        """Return the steps that give no points to every answer that waits in a question."""
+        answers = dict.fromkeys(
+            one.mark.answer
+            for group, members in self.open
+            for one in members
+            if (group.exercise, group.part) == question and one.mark.verdict in WAITING
+        )
+        return [step(GIVEN, *question, points=0.0, answer=answer) for answer in answers]
+
     def taken_back(self, by: str, reasons: Iterable[str]) -> list[Decision]:
         """Return the decisions that take back those that put non-answers away, for one of these reasons."""
         given = [one for one in self.decisions.own if one.kind == GIVEN and one.reason in {*reasons}]

@@ -104,3 +104,13 @@ def test_a_non_answer_says_no_number_and_refers_nowhere():
     said = {"hm": True, "no time": True, "…": True, "3 or 4": False, "see sheet": False, "π": False}
     assert {text: is_non_answer(text, is_number=True) for text in said} == said
     assert not is_non_answer("crank", is_number=False)
+
+
+def test_all_that_waits_in_a_question_is_refused_at_one_stroke(marked, capsys):
+    folder, after = marked
+    assert after("--refuse", "1.1", "--yes") == 0
+    assert "provisional" not in table(folder / "summary.csv")[0]
+    assert {row["points"] for row in table(folder / "decisions.csv")} == {"0"}
+    capsys.readouterr()
+    assert after("--refuse", "1.1", "--yes") == 0
+    assert "no answer waits" in capsys.readouterr().out
