@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, NamedTuple
 from coursework.errors import WrongValue
 from coursework.figures.base import Element
 from coursework.figures.ink import MARKS, THIN, Ink, Path
+from coursework.figures.printed import Printed
 from coursework.language.numbers import rounded, settled
 
 if TYPE_CHECKING:
@@ -89,8 +90,48 @@ class _Layout:
         return [(k, letters(label, self.corner)) for k, label in zip(self.named, self.labels, strict=True)]
 
 
+class _Drawn(Printed):
+    """Elements of a layout: the first ones, or all."""
+
+    count: int | None = None
+
+    @property
+    def _layout(self) -> _Layout:
+        raise NotImplementedError
+
+    @property
+    def size_mm(self) -> tuple[float, float]:
+        return self._layout.size_mm
+
+    def svg(self) -> str:
+        from coursework.figures.writing import as_text
+
+        return self._layout.svg(self.count, as_text)
+
+    def outlined_svg(self) -> str:
+        """Return the drawing as SVG with labels as outlines, independent of installed fonts."""
+        from coursework.figures.writing import as_outlines
+
+        return self._layout.svg(self.count, as_outlines)
+
+    def bare_svg(self) -> str:
+        """Return the drawing as SVG without the letters of its labels, which the caller sets over it: see
+        :meth:`letters`."""
+        from coursework.figures.writing import left_out
+
+        return self._layout.svg(self.count, left_out)
+
+    def letters(self) -> tuple[Letters, ...]:
+        """Return the letters of the labels with their positions on the drawing."""
+        return self._layout.letters(self.count)
+
+    def _repr_svg_(self) -> str:
+        """Return the SVG that a notebook shows."""
+        return self.outlined_svg()
+
+
 @dataclass(frozen=True, init=False)
-class Figure:
+class Figure(_Drawn):
     """Elements in mechanism coordinates (complex, mm, y up), drawn to one scale in a paper box.
 
     ``paper_mm`` is the largest width and height the drawing may take, labels included, 110 by 75 unless
@@ -261,11 +302,6 @@ class Figure:
         """Millimetres on paper for one millimetre of mechanism."""
         return self._layout.scale
 
-    @property
-    def size_mm(self) -> tuple[float, float]:
-        """Width and height of the drawing on paper."""
-        return self._layout.size_mm
-
     def labels(self) -> tuple[LabelBox, ...]:
         """Return the boxes of the labels as placed."""
         corner = self._layout.corner
@@ -280,82 +316,17 @@ class Figure:
             for it in self._layout.labels
         )
 
-    def svg(self) -> str:
-        """Return the drawing as SVG, in mm, labels as text."""
-        from coursework.figures.writing import as_text
-
-        return self._layout.svg(None, as_text)
-
-    def outlined_svg(self) -> str:
-        """Return the drawing as SVG with labels as outlines, independent of installed fonts."""
-        from coursework.figures.writing import as_outlines
-
-        return self._layout.svg(None, as_outlines)
-
-    def bare_svg(self) -> str:
-        """Return the drawing as SVG without the letters of its labels, which the caller sets over it: see
-        :meth:`letters`."""
-        from coursework.figures.writing import left_out
-
-        return self._layout.svg(None, left_out)
-
-    def letters(self) -> tuple[Letters, ...]:
-        """Return the letters of the labels with their positions on the drawing."""
-        return self._layout.letters(None)
-
-    def _repr_svg_(self) -> str:
-        """Return the SVG that a notebook shows."""
-        return self.outlined_svg()
-
-    def png(self, ppi: float = 200) -> bytes:
-        """Return the drawing as PNG, ``ppi`` pixels an inch."""
-        from coursework.figures.typesetting import converted
-
-        return converted(self.svg(), self.size_mm[0], "png", ppi)
-
-    def pdf(self) -> bytes:
-        """Return the drawing as one PDF page of its own size."""
-        from coursework.figures.typesetting import converted
-
-        return converted(self.svg(), self.size_mm[0], "pdf")
-
 
 @dataclass(frozen=True)
-class Beginning:
-    """First elements of a figure: a step of a construction."""
+class Beginning(_Drawn):
+    """First elements of a figure, in the frame of the whole: a step of a construction."""
 
     whole: Figure
     count: int
 
     @property
-    def size_mm(self) -> tuple[float, float]:
-        """Width and height on paper, those of the whole."""
-        return self.whole.size_mm
-
-    def svg(self) -> str:
-        """Return the drawing as SVG, in mm, labels as text."""
-        from coursework.figures.writing import as_text
-
-        return self.whole._layout.svg(self.count, as_text)
-
-    def outlined_svg(self) -> str:
-        """Return the same with labels as outlines."""
-        from coursework.figures.writing import as_outlines
-
-        return self.whole._layout.svg(self.count, as_outlines)
-
-    def bare_svg(self) -> str:
-        """Return the same without the letters of its labels."""
-        from coursework.figures.writing import left_out
-
-        return self.whole._layout.svg(self.count, left_out)
-
-    def letters(self) -> tuple[Letters, ...]:
-        """Return the letters of the labels with their positions on the drawing."""
-        return self.whole._layout.letters(self.count)
-
-    def _repr_svg_(self) -> str:
-        return self.outlined_svg()
+    def _layout(self) -> _Layout:
+        return self.whole._layout
 
 
 def _bounds(ink: Sequence[Ink], points: Sequence[complex]) -> tuple[complex, complex]:

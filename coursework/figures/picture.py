@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from coursework.errors import BadCourse, nearest
+from coursework.figures.printed import Printed
 
 if TYPE_CHECKING:
     from xml.etree import ElementTree
@@ -52,7 +53,7 @@ _LINKS = (
 
 
 @dataclass(frozen=True, eq=False)
-class Picture:
+class Picture(Printed):
     """Picture from a file beside the exercise, or from its bytes; ``width_mm`` on paper, its natural width by
     default.
 
@@ -107,7 +108,6 @@ class Picture:
 
     @property
     def size_mm(self) -> tuple[float, float]:
-        """Width and height on paper."""
         wide = self.width_mm or self._drawn[1]
         return round(wide, 1), round(wide * self._drawn[2], 1)
 
@@ -130,18 +130,6 @@ class Picture:
 
     def _repr_svg_(self) -> str:
         return self.svg()
-
-    def png(self, ppi: float = 200) -> bytes:
-        """Return the picture as PNG, ``ppi`` pixels an inch."""
-        from coursework.figures.typesetting import converted
-
-        return converted(self.svg(), self.size_mm[0], "png", ppi)
-
-    def pdf(self) -> bytes:
-        """Return the picture as one PDF page of its own size."""
-        from coursework.figures.typesetting import converted
-
-        return converted(self.svg(), self.size_mm[0], "pdf")
 
 
 def _of_png(data: bytes) -> tuple[str, float, float]:
