@@ -284,12 +284,11 @@ def wrong(folder: Path) -> None:
             print(row["index"], row["kind"], row["found"])
 
 
-def main() -> None:
-    folder, what, kind = (*sys.argv[1:4], "10000", "")[:3] if len(sys.argv) < 3 else (*sys.argv[1:4], "")[:3]
+def main(folder: str, what: str = "10000", kind: str = "") -> None:
     if what.isdigit():
         run(Path(folder), int(what), kind)
     {"wrong": wrong, "doubted": doubted}.get(what, table)(Path(folder))
 
 
 if __name__ == "__main__":
-    main()
+    main(*sys.argv[1:4])

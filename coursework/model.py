@@ -710,6 +710,11 @@ class Exercise:
         """
         return {} if self.tells is None else self.tells(*[given[n] for n in _parameters(self.tells)])
 
+    @property
+    def exchangeable(self) -> frozenset[str]:
+        """Ids of the parts whose answers are judged in either order."""
+        return frozenset(part_id for group in self.either_order for part_id in group)
+
     def part(self, part_id: str) -> Part | None:
         """Return the part of this id, or None.
 

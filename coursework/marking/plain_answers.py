@@ -30,7 +30,7 @@ def plainly_right(sheets: Sequence[tuple[Variant, Mapping[str, Any]]]) -> list[d
         if variant.key.is_of_batch:
             places.setdefault(variant.exercise, []).append(place)
     for exercise, rows in places.items():
-        exchangeable = {i for group in exercise.spec.either_order for i in group}
+        exchangeable = exercise.spec.exchangeable
         for part in exercise.spec.parts:
             if part.sort.marks_columns() and not part.judge and part.id not in exchangeable:
                 for row, text in _right(part, [sheets[row] for row in rows]):

@@ -129,7 +129,7 @@ def _why_collected(variant: Variant, key: Key, part: Part) -> str:
         return "open"
     if part.judge:
         return "judged_together"
-    if any(part.id in group for group in variant.exercise.spec.either_order):
+    if part.id in variant.exercise.spec.exchangeable:
         return "either_order"
     if part.choices:
         several_of_none = part.sort.box == "several" and not cases_of(key.reference[part.quantity])

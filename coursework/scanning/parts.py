@@ -36,7 +36,7 @@ class Joins:
     def is_right(self, part: tuple[str, int, str], answer: str) -> bool:
         """Return True if an answer is right by itself; one that is judged with others never is."""
         variant, question = self.part_of(part)
-        if question.judge or any(question.id in group for group in variant.exercise.spec.either_order):
+        if question.judge or question.id in variant.exercise.spec.exchangeable:
             return False
         return mark_alone(variant, question, answer).verdict == "correct"
 
