@@ -247,11 +247,3 @@ def test_control_characters_do_not_break_the_package():
     below(root, "b", "x\0\x07\ud800y<&>]]>", name="\x1b\"'<")
     assert fromstring(xml_bytes(root)).find("b").text == "xy<&>]]>"
     assert fromstring(xml_bytes(root)).find("b").get("name") == "\"'<"
-
-
-def test_every_loss_has_words_in_both_languages():
-    from coursework.language.words import words
-
-    found = [words(lang)["platforms"]["lost"]["canvas"] for lang in LANGS]
-    assert found[0].keys() == found[1].keys()
-    assert all(len(words(lang)["platforms"]["steps"]["canvas"]) == 6 for lang in LANGS)

@@ -246,11 +246,3 @@ def test_texts_and_formulas_as_maxima_reads_them():
         printed(ast.parse("x if x else y", mode="eval").body, {"x": "v1", "y": "v2"}.__getitem__, space)
     with pytest.raises(Unprintable):
         printed(ast.parse("open(x)", mode="eval").body, {"x": "v1"}.__getitem__, {"open": open})
-
-
-def test_every_loss_has_words_in_both_languages():
-    from coursework.language.words import words
-
-    found = [words(lang)["platforms"] for lang in LANGS]
-    assert found[0]["lost"]["stack"].keys() == found[1]["lost"]["stack"].keys()
-    assert found[0]["stack"].keys() == found[1]["stack"].keys()
