@@ -92,18 +92,18 @@ def _exercise(env: Environment, exercise: BookExercise, whose: str, end: str) ->
 def _typst_pieces(
     env: Environment, book: Book, lesson: LessonText, pieces: Sequence[Piece], *, floats: bool = True
 ) -> Markup:
-    here = (
-        {exercise.handout.exercise for exercise in book.exercises},
-        {exercise.name for exercise in book.lessons},
-    )
+    numbers = {
+        "exercise": {one.handout.exercise: one.number for one in book.exercises},
+        "lesson": {one.name: str(one.number) for one in book.lessons},
+    }
 
     def write(link: TextLink) -> str:
         if link.kind in _MARKS:
             return f'[{link.said}]({_MARKS[link.kind]} "{typeset(link.name, book.lang)}")'
-        if link.name not in here[link.kind == "lesson"]:
+        if link.name not in numbers[link.kind]:
             return link.said
         section = f"-{link.section}" if link.section else ""
-        named = _cited(book, lesson, link).replace('"', "")
+        named = _cited(book, lesson, link, numbers[link.kind][link.name]).replace('"', "")
         return f'[{link.said}](#{link.kind}-{link.name}{section} "{typeset(named, book.lang)}")'
 
     names = _of_book(book) | {
@@ -116,15 +116,13 @@ def _typst_pieces(
     return Markup(render(env, "book/_pieces.typ.j2", names))
 
 
-def _cited(book: Book, lesson: LessonText, link: TextLink) -> str:
+def _cited(book: Book, lesson: LessonText, link: TextLink, number: str) -> str:
     """Return how paper names the place of a link: exercise 2.3, lesson 4 §5, or §5 in the same lesson."""
     book_words = words(book.lang)["book"]
     if link.kind == "exercise":
-        number = next(one.number for one in book.exercises if one.handout.exercise == link.name)
         return str(book_words["cited_exercise"].format(number))
     if link.name == lesson.name and link.section:
         return str(book_words["cited_here"].format(link.section))
-    number = str(next(one.number for one in book.lessons if one.name == link.name))
     key = "cited_section" if link.section else "cited_lesson"
     return str(book_words[key].format(number, link.section))
 
@@ -179,7 +177,7 @@ def pages(
 
 
 def _terms(env: Environment, book: Book, names: Mapping[str, Any]) -> str:
-    terms = book.terms
+    terms, titles = book.terms, {lesson.name: lesson.title for lesson in book.lessons}
     machines: dict[str, list[BookExercise]] = {one.entry: [] for one in book.machines} | dict(_machines(book))
     see: dict[str, list[str]] = {}
     for one in book.see:
@@ -191,9 +189,7 @@ def _terms(env: Environment, book: Book, names: Mapping[str, Any]) -> str:
             {
                 "entry": typeset(entry, book.lang),
                 "anchor": anchor(entry),
-                "places": [
-                    (f"{name}.html#{anchor(entry)}", _title_of(book, name)) for name in terms.get(entry, ())
-                ],
+                "places": [(f"{name}.html#{anchor(entry)}", titles[name]) for name in terms.get(entry, ())],
                 "see": [(f"#{anchor(to)}", typeset(to, book.lang)) for to in see.get(entry, ())],
                 "exercises": machines.get(entry, ()),
             }
@@ -257,10 +253,6 @@ def _paper_heading(book: Book, chapter: BookChapter) -> PaperHeading:
 
 def _paper(env: Environment, paper: Paper | SolutionPaper, names: Mapping[str, Any], template: str) -> str:
     return render(env, template, {**names, **papers.page_names(env, paper)})
-
-
-def _title_of(book: Book, lesson: str) -> str:
-    return next(lesson_page.title for lesson_page in book.lessons if lesson_page.name == lesson)
 
 
 def _page(env: Environment, book: Book, page: BookPage, names: Mapping[str, Any]) -> str:
