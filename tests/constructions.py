@@ -137,8 +137,9 @@ def two_circles(hand):
     if "radii" in hand.mistakes:
         r3, r4 = r4, r3
     hand.circle(A, f"{r3 * hand.scale:g}/{hand.scale:g}")
-    hand.circle(C, f"{r4 * hand.scale:g}/{hand.scale:g}")
-    way = C - A
+    centre = hand.at[hand.mistakes.get("centre", "c")]
+    hand.circle(centre, f"{r4 * hand.scale:g}/{hand.scale:g}")
+    way = centre - A
     along = (abs(way) ** 2 + r3**2 - r4**2) / (2 * abs(way))
     for name, side, mode in (("b1", 1j, "open"), ("b2", -1j, "crossed")):
         B = A + way / abs(way) * (along + side * math.sqrt(r3**2 - along**2))
