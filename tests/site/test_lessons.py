@@ -302,3 +302,23 @@ def test_who_has_all_right_is_told_what_was_learned_what_comes_and_how_far_the_c
     assert 'value="1"' in card
     assert f"done: 1 of {len(chapter.exercises)}" in card
     assert "next: " in card
+
+
+def test_a_place_in_a_lesson_is_kept_with_the_account_and_the_latest_counts(class_):
+    address = f"/lessons/{LESSON}"
+    first, second, other = class_.browser(ZOE), class_.browser(ZOE), class_.browser(MAX)
+    assert first.fill(address, {"place": "7/46/2000"}).status_code == 204
+    assert (
+        second.fill(address, {"place": "3/46/1000"}).status_code == 204
+    )  # of a telephone that had no network
+    page = second.get("/practice").text
+    assert f'data-place-of="{LESSON}" data-place="7/46/2000"' in page
+    assert page.count('data-place=""') > 5
+    assert "7/46" not in other.get("/practice").text
+    assert second.fill(address, {"place": "8/46/3000"}).status_code == 204
+    assert f'data-lesson="{LESSON}" data-place="8/46/3000"' in first.get(address).text
+    for wrong in ("", "0/46/1", "8/46", "8/46/1/2", '"><b>', "8/46/" + "9" * 16):
+        assert first.fill(address, {"place": wrong}).status_code == 400
+    assert first.fill("/lessons/none", {"place": "1/2/3"}).status_code == 404
+    assert first.post(address, data={"place": "9/46/9000"}).status_code == 403  # from another site
+    assert "8/46/3000" in first.get("/practice").text

@@ -2,6 +2,7 @@
 
 import pytest
 from site_browser import cut_in_print, low, serious, too_wide, watched
+from site_people import MAX
 
 from coursework.site.lessons.lesson_content import lesson_of
 
@@ -52,6 +53,17 @@ def test_a_lesson_is_read_by_touch_to_its_exercise_and_goes_on_where_one_stopped
     page.locator(".lesson-end a[href='/practice/joint_graph']").tap()
     page.wait_for_url("**/practice/joint_graph/*")
     assert wrong == []
+
+
+def test_another_device_goes_on_where_one_stopped(window):
+    page = window(f"/lessons/{LESSON}", name=MAX)
+    for _ in range(2):
+        page.locator("[data-go='1']").tap()
+    place = shown(page)
+    with page.expect_response(lambda reply: reply.request.method == "POST") as kept:
+        pass
+    assert kept.value.status == 204
+    assert shown(window(f"/lessons/{LESSON}", name=MAX)) == place != ["step-1"]
 
 
 def test_a_link_to_a_section_opens_its_step(window):

@@ -25,6 +25,7 @@ from coursework.site.lessons.lesson_content import (
     lesson_lang,
     lesson_of,
 )
+from coursework.site.lessons.places import keep_place, places
 from coursework.site.practice.contents import exercise_title, titles
 
 _BOX = "blank-"  #: before the names of the boxes of blanks
@@ -47,8 +48,11 @@ class CheckedBlank(NamedTuple):
 
 
 def lesson(request: Request) -> Response:
-    """Return the page of a lesson; a form checks the blanks of one of its examples."""
-    name, opened = _opened(request)
+    """Return the page of a lesson; a form checks the blanks of one of its examples, or keeps the place of its reader."""
+    name = _name(request)
+    if request.is_post and "place" in request.form.texts:
+        return keep_place(request, name)
+    opened = _opened(request, name)
     checked: dict[int, list[CheckedBlank]] = {}
     is_complete = False
     if request.is_post:
@@ -70,6 +74,7 @@ def lesson(request: Request) -> Response:
         name=name,
         lesson_lang=lesson_lang(request.site, name, request.lang),
         address=lesson_address(name),
+        place=places(request).get(name, ""),
         number=1 + order.index(name),
         chapter=next((c for c in titles(request.site, request.lang) if _has(c, name)), None),
         exercises=_exercises(request, name),
@@ -88,12 +93,16 @@ def _has(chapter: Any, lesson_name: str) -> bool:
     return any(group.lesson == lesson_name for group in chapter.groups)
 
 
-def _opened(request: Request) -> tuple[str, SteppedLesson]:
-    """Return the lesson of the address. Raises HTTPException: there is none."""
+def _name(request: Request) -> str:
+    """Return the name of the lesson of the address. Raises HTTPException: there is none."""
     name = str(request.path_params["lesson"])
     if name not in request.site.course.folder.lessons:
         raise HTTPException("page", 404)
-    return name, lesson_of(request.site, name, lesson_lang(request.site, name, request.lang))
+    return name
+
+
+def _opened(request: Request, name: str) -> SteppedLesson:
+    return lesson_of(request.site, name, lesson_lang(request.site, name, request.lang))
 
 
 def _exercises(request: Request, name: str) -> list[LessonExercise]:
@@ -144,10 +153,8 @@ def _checked(request: Request, blanks: BlanksPiece) -> Iterator[CheckedBlank]:
 
 def figure(request: Request) -> Response:
     """Return a drawing of a lesson; its name changes with its content."""
-    name, wanted = str(request.path_params["lesson"]), str(request.path_params["figure"])
+    name, wanted = _name(request), str(request.path_params["figure"])
     folder = request.site.course.folder
-    if name not in folder.lessons:
-        raise HTTPException("page", 404)
     langs = dict.fromkeys(lesson_lang(request.site, name, lang) for lang in (request.lang, *folder.languages))
     for lang in langs:
         if (svg := lesson_of(request.site, name, lang).figures.get(wanted)) is not None:

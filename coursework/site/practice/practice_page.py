@@ -28,6 +28,7 @@ from coursework.site.frame.drafts import save_drafts
 from coursework.site.frame.requests import HTTPException, Request, Route
 from coursework.site.frame.responses import opens_offline, redirect
 from coursework.site.lessons.lesson_content import LessonLink, lesson_address
+from coursework.site.lessons.places import places
 from coursework.site.papers.assignment_state import to_hand_in
 from coursework.site.practice.contents import ChapterEntry, contents, exercise_title, next_of
 from coursework.site.practice.worksheet import BOX_PREFIX, QuestionHints, Worksheet
@@ -45,6 +46,7 @@ def course(request: Request) -> Response:
         going_title=going and exercise_title(request.site.course[going.exercise], request.lang),
         next=next_of(request, progress),
         due=to_hand_in(request),
+        places=places(request),
     )
     return opens_offline(page)
 

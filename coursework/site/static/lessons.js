@@ -1,17 +1,33 @@
 // A lesson in steps on a narrow screen, and the place where one stopped, which the course page shows. Each step has its address.
+// The place is kept on the device, and with the account; of the two the later counts.
 (function () {
   "use strict";
   const key = (name) => "lesson " + (document.body.dataset.person || "") + " " + name;
-  const place = (name) => {
-    try { return JSON.parse(localStorage.getItem(key(name))) || null; } catch { return null; }
+  const place = (name, ofAccount) => {
+    let mine = null;
+    try { mine = JSON.parse(localStorage.getItem(key(name))); } catch { /* a browser that stores nothing */ }
+    const [step, of, at] = ofAccount.split("/").map(Number);
+    return at > (mine && mine.at || 0) ? { step: step, of: of, at: at } : mine;
   };
+  let unsent = null, timer = 0;
+  function send() {
+    clearTimeout(timer);
+    const headers = JSON.parse(document.body.getAttribute("hx-headers") || "{}");
+    if (unsent) fetch(location.pathname, { method: "POST", body: new URLSearchParams({ place: unsent }), headers: headers, keepalive: true }).catch(() => undefined);
+    unsent = null;
+  }
   const keep = (name, step, of) => {
-    try { localStorage.setItem(key(name), JSON.stringify({ step: step, of: of })); } catch { /* a browser that stores nothing */ }
+    const at = Date.now();
+    try { localStorage.setItem(key(name), JSON.stringify({ step: step, of: of, at: at })); } catch { /* the account has it */ }
+    unsent = [step, of, at].join("/");
+    clearTimeout(timer);
+    timer = setTimeout(send, 2000);
   };
+  addEventListener("pagehide", send);
   const words = (text, ...values) => text.replace(/\{(\d)\}/g, (_, k) => values[k]);
 
   for (const link of document.querySelectorAll("a[data-place-of]")) {
-    const stopped = place(link.dataset.placeOf);
+    const stopped = place(link.dataset.placeOf, link.dataset.place);
     if (!stopped || stopped.step < 2) continue;
     link.hash = "step-" + stopped.step;
     link.nextElementSibling.textContent = words(link.dataset.words, stopped.step, stopped.of);
@@ -79,12 +95,12 @@
     navigator.serviceWorker.ready.then((one) => one.active.postMessage({ files: Array.from(new Set(files)) }));
   }, 1500));
 
-  const asked = named(location.hash), stopped = place(name);
+  const asked = named(location.hash), stopped = place(name, lesson.dataset.place);
   const first = asked >= 0 ? asked : narrow.matches && stopped ? Math.min(Math.max(stopped.step, 1), steps.length) - 1 : 0;
   lesson.classList.add("stepped");
   bar.hidden = false;
   if (asked < 0 && first > 0) history.replaceState(null, "", "#step-" + (first + 1));
-  const before = place(name);
+  const before = stopped;
   show(first, true);
   if (narrow.matches && first > 0) scrollTo(0, lesson.getBoundingClientRect().top + scrollY - 8);
   if (narrow.matches) return;
