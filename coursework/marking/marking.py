@@ -10,11 +10,14 @@ from __future__ import annotations
 import itertools
 import math
 from collections.abc import Mapping
+from contextlib import suppress
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from coursework.course.answer_key import Key
-from coursework.errors import WrongValue, unknown
+from coursework.errors import CourseworkError, WrongValue, unknown
 from coursework.language.words import words
 from coursework.marking.answers import read
 from coursework.marking.attempts import sheet_of
@@ -26,7 +29,7 @@ from coursework.marking.error_messages import mark_wrong, shown_as
 from coursework.marking.exchanged import Exchange, exchanged
 from coursework.marking.feedback import Sentence, echo, part_name, questions, say, say_not_read
 from coursework.marking.joint_marking import is_told_with, mark_judged, waits_for
-from coursework.marking.judges import best_judged, is_scale, judged_again, judges_of
+from coursework.marking.judges import best_judged, is_scale, judged, judged_again, judges_of
 from coursework.marking.loop_judge import loop_verdicts
 from coursework.marking.mark import Mark, SheetMarks, made_mark
 from coursework.model import Part
@@ -34,6 +37,10 @@ from coursework.parsing.reading import Reading
 
 if TYPE_CHECKING:
     from coursework.course.variant import Variant
+
+_NEAR = (
+    0.02  #: of the largest number of an answer, within which one that a judge takes is the reference's own
+)
 
 
 def mark(variant: Variant, answers: Mapping[str, Any], known: Mapping[str, str] | None = None) -> SheetMarks:
@@ -133,6 +140,37 @@ def mark_alone(variant: Variant, part: Part, answer: Any) -> Mark:
     reading = settled(variant, {part.id: read(variant, part, answer)}, {part.id: answer})[part.id]
     nearest = nearest_reading(part, reading, variant.key, part)
     return _mark_part(variant, variant.key, part, reading, part, nearest, EarlierAnswers())
+
+
+def is_right_alone(variant: Variant, part: Part, answer: Any) -> bool:
+    """Return whether an answer is the right one where those are right that are judged with it, in any order in which whole
+    groups may be exchanged. Of many answers that a judge takes, only what is near the reference is."""
+    groups = [group for group in variant.exercise.spec.either_order if part.id in group]
+    if not part.judge and not groups:
+        return mark_alone(variant, part, answer).verdict == "correct"
+    reading = settled(variant, {part.id: read(variant, part, answer)}, {part.id: answer})[part.id]
+    if reading.status != "read":
+        return False
+    reference, parts = variant.key.reference, {p.id: p for p in variant.parts}
+    if part.judge:
+        right = {p.id: reference[p.quantity] for p in variant.parts if p.judge == part.judge}
+        near = [value for value in reading.values if _is_near(value, right[part.id])]
+        with suppress(CourseworkError):  # a judge may find no mechanism of such numbers
+            return any(
+                judged(variant, part.judge, {**right, part.id: value})[part.id].share >= 1 for value in near
+            )
+        return False
+    place = groups[0].index(part.id)
+    others = [parts[group[place]] for group in variant.exercise.spec.either_order]
+    return any(nearest_reading(part, reading, variant.key, other)[1] <= 1 for other in others)
+
+
+def _is_near(value: Any, reference: Any) -> bool:
+    """Return whether each of some numbers is near the reference, on the scale of the largest of them."""
+    found, wanted = np.asarray(value), np.asarray(reference)
+    if found.shape != wanted.shape or found.dtype.kind not in "ifc" or wanted.dtype.kind not in "ifc":
+        return False
+    return bool(np.abs(found - wanted).max(initial=0) <= _NEAR * np.abs(wanted).max(initial=0))
 
 
 def _targets(variant: Variant, readings: Mapping[str, Reading], key: Key) -> dict[str, str]:

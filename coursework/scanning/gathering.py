@@ -147,7 +147,7 @@ class Parts(Protocol):
         """Return the texts of the coordinates as one answer."""
 
     def is_right(self, part: Part, answer: str) -> bool:
-        """Return True if an answer is right by itself, within its margin."""
+        """Return True if an answer is right within its margin, those being right that are judged with it."""
 
 
 def gather(

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from coursework.marking.marking import mark_alone
+from coursework.marking.marking import is_right_alone
 from coursework.scanning.gathering import PrintedPaper
 from coursework.scanning.page_reading import Papers
 
@@ -34,11 +34,9 @@ class Joins:
         return bool(self.part_of(part)[1].sort.is_open)
 
     def is_right(self, part: tuple[str, int, str], answer: str) -> bool:
-        """Return True if an answer is right by itself; one that is judged with others never is."""
+        """Return True if an answer is right, those being right that are judged with it."""
         variant, question = self.part_of(part)
-        if question.judge or question.id in variant.exercise.spec.exchangeable:
-            return False
-        return mark_alone(variant, question, answer).verdict == "correct"
+        return is_right_alone(variant, question, answer)
 
     def is_drawn(self, part: tuple[str, int, str]) -> bool:
         variant, question = self.part_of(part)

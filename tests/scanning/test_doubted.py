@@ -112,3 +112,30 @@ def test_what_a_number_may_be_is_kept():
         assert page_of(stored) is None
         del stored["fields"][0]["candidates"]  # of a page that was read before
         assert page_of(stored).fields == (field,)
+
+
+def test_an_answer_that_is_judged_with_others_counts_where_it_is_the_right_one():
+    def taken(exercise, part, *texts):
+        variant = open_course()[exercise].variant(5, "en")
+        fields = [(text, 0.99, "doubted") for text in texts]
+        return len(gathered(variant, part, *fields).answers) == 1, variant.key.reference
+
+    _, key = taken("two_circles", "kl", "2")
+    angle, other = (f"{key[name]:.2f}" for name in ("theta3_open", "theta3_crossed"))
+    scale, point = f"{key['kl']:.0f}", [f"{v:.1f}" for v in key["a"]]
+    assert taken("two_circles", "theta3_open", angle)[0]
+    assert not taken("two_circles", "theta3_open", other)[0]
+    assert taken("two_circles", "kl", scale)[0]
+    assert not taken("two_circles", "kl", f"{2 * float(scale):.0f}")[
+        0
+    ]  # any scale is right, but may be misread
+    assert taken("two_circles", "a", *point)[0]
+    assert not taken("two_circles", "a", point[0], f"{float(point[1]) + 5:.1f}")[0]
+
+
+def test_an_answer_of_groups_that_may_be_exchanged_counts_in_either_order():
+    variant = open_course()["four_bar_positions"].variant(5, "en")
+    right = [f"{variant.key.reference[name]:.2f}" for name in ("theta3_open", "theta3_crossed")]
+    for text in right:
+        assert len(gathered(variant, "theta3_open", (text, 0.99, "doubted")).answers) == 1
+    assert gathered(variant, "theta3_open", (f"{float(right[0]) + 9:.2f}", 0.99, "doubted")).cards
