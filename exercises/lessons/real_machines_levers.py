@@ -335,12 +335,15 @@ def _tipper():
     }
 
 
+HOOK = 100000.0  #: the load on the hook, N
 LUFFING = np.linspace(48.0, 90.0, 421)
 
 
 def _crane():
     head = path("level_luffing_crane", "P", theta2=LUFFING)
-    torque = solved("level_luffing_crane", "torque", theta2=LUFFING) / 1e6
+    # By the powers: what the load takes, over the angular velocity of the jib.
+    rate = data("level_luffing_crane")["omega2"]
+    torque = HOOK * solved("level_luffing_crane", "v_P_y", theta2=LUFFING) / 1000 / rate / 1e6
     sizes = {
         f"crane_{n}": f"{v / 1000:.3g}"
         for n, v in data("level_luffing_crane").items()
@@ -348,11 +351,12 @@ def _crane():
     }
     return {
         **sizes,
+        "crane_load": f"{HOOK / 1000:.0f}",
         "crane_low": f"{LUFFING[0]:.0f}",
         "crane_high": f"{LUFFING[-1]:.0f}",
         "crane_near": f"{head.real.min() / 1000:.1f}",
         "crane_far": f"{head.real.max() / 1000:.1f}",
         "crane_height": f"{np.ptp(head.imag) / 1000:.2f}",
         "crane_torque": f"{abs(torque).max():.2f}",
-        "crane_plain": f"{100000 * head.real.max() / 1e9:.2f}",
+        "crane_plain": f"{HOOK * head.real.max() / 1e9:.2f}",
     }

@@ -89,7 +89,10 @@ def crane():
     A = 30 * np.exp(1j * luffed)
     B = joined(A, -3.8 + 8.5j, 4, 24.4, -1)
     P = A + (B - A) / 4 * 11.6 * np.exp(1j * np.radians(197))
-    yield "crane_r2 crane_r3 crane_r4 crane_AP crane_low crane_high", (30, 4, 24.4, 11.6, 48, 90)
+    yield (
+        "crane_r2 crane_r3 crane_r4 crane_AP crane_load crane_low crane_high",
+        (30, 4, 24.4, 11.6, 100, 48, 90),
+    )
     yield "crane_near crane_far crane_height", (P.real.min(), P.real.max(), np.ptp(P.imag))
     # The work on the load, 100 kN: MN m for each radian of the jib.
     yield "crane_torque crane_plain", (0.1 * abs(np.gradient(P.imag, luffed)).max(), 0.1 * P.real.max())
