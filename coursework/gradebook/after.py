@@ -17,7 +17,7 @@ from coursework.course.course import Course
 from coursework.gradebook.adjustments import NEUTRAL, SPARED, STEP, WEIGHT, Adjustments, Question
 from coursework.gradebook.book import Gradebook, Result, Sitting, results
 from coursework.gradebook.decisions import ACCEPTED, GIVEN, WITHDRAWN, Decision, Decisions, check_steps
-from coursework.gradebook.graded_sheet import WAITING, Graded
+from coursework.gradebook.graded_sheet import Graded
 from coursework.gradebook.presence import ABSENT, EXCUSED, PRESENT
 from coursework.gradebook.questions import drawn_questions, number_of, questions_of
 from coursework.gradebook.rows import Rejected
@@ -39,7 +39,7 @@ from coursework.issuing.assignment import Assignment
 from coursework.issuing.issued import Issued
 from coursework.issuing.students import folded
 from coursework.issuing.variant_assignment import with_points
-from coursework.marking.mark import Mark
+from coursework.marking.mark import WAITING, Mark
 from coursework.messages import Message
 from coursework.parsing.spoken import refers_elsewhere, says_nothing
 

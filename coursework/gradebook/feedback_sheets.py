@@ -28,7 +28,7 @@ from coursework.issuing.students import file_stems
 from coursework.language.numbers import localise, plain
 from coursework.language.words import words
 from coursework.marking.feedback import localised
-from coursework.marking.mark import Mark
+from coursework.marking.mark import WAITING, Mark
 from coursework.marking.marking import mark
 from coursework.markup.markdown import plain_line
 from coursework.messages import Message
@@ -69,7 +69,7 @@ def feedback_sheet(
     ]
     if not any(line.answer for line in lines):  # nothing was tried: the lesson and another variant say more
         lines = [replace(line, hint="") for line in lines]
-    lost = any(line.points < line.out_of and line.verdict not in _WAIT for line in lines)
+    lost = any(line.points < line.out_of and line.verdict not in WAITING for line in lines)
     practice = (
         telling.practice.after(graded.exercise, graded.student, variant.lang)
         if telling.practice and lost
@@ -132,9 +132,8 @@ def _right_answers(variant: Variant) -> dict[str, str]:
 # ------------------------------------------------------------------------ paper
 
 _ADVISED = 3  #: places that are pointed at
-_WAIT = ("unreadable", "to_mark")  #: verdicts that are not the last word
 #: Verdicts of answers that do not show how their quantity was looked for.
-_NOT_ABOUT_IT = (*_WAIT, "wrong_unit", "missing_unit", "follow_through", "accepted", f"slip:{ALL_DEGREES}")
+_NOT_ABOUT_IT = (*WAITING, "wrong_unit", "missing_unit", "follow_through", "accepted", f"slip:{ALL_DEGREES}")
 
 
 def feedback_paper(
@@ -249,7 +248,7 @@ def _advice(sheets: Sequence[FeedbackSheet], handed_in: Collection[str], lang: s
             places.append((0.0, sheet.out_of, sheet.handout.title))
             continue
         for line in sheet.lines:
-            if line.verdict not in _WAIT:
+            if line.verdict not in WAITING:
                 number = f"{position}.{line.question.number}"  # as papers number their questions
                 name = texts["advised"].format(exercise=sheet.handout.title, number=number)
                 symbol = f", ${line.question.symbol}$" if line.question.symbol else ""

@@ -5,9 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any, NamedTuple
 
-from coursework.marking.mark import Mark
-
-WAITING = ("to_mark", "unreadable")  #: verdicts of answers that wait for a person
+from coursework.marking.mark import WAITING, Mark
 
 
 class Graded(NamedTuple):

@@ -13,6 +13,9 @@ from coursework.parsing.reading import Reading
 if TYPE_CHECKING:
     from coursework.course.variant import Variant
 
+#: Verdicts of answers that wait for a person: they are not the last word.
+WAITING = ("to_mark", "unreadable")
+
 
 class Mark(NamedTuple):
     """Judgement of one answer: plain data, from the marking to the tables and the feedback."""

@@ -13,12 +13,12 @@ from coursework.course.error_values import TAKEN
 from coursework.figures.text import SIZE, LetterRun
 from coursework.language.numbers import localise, plain
 from coursework.language.words import listed, quoted, words
+from coursework.marking.mark import WAITING
 from coursework.quantities.usual_errors import KINDS
 from coursework.rendering import views
 from coursework.rendering.views import renumbered
 from coursework.sheets.sheet import FeedbackLine, FeedbackSheet, Lesson, Practice
 
-WAITING = ("unreadable", "to_mark")  #: verdicts that are not the last word
 SIGNS = ("full", "part", "none", "wait")
 
 #: Width of the answer's column beside a question, mm, and of the sides of a cell.

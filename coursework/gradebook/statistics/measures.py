@@ -19,7 +19,7 @@ from coursework.gradebook.statistics.marks import Marks, family_of
 
 RIGHT = ("correct", "follow_through", "accepted")
 RECOGNISED = ("mistake", "slip")
-WAITING = "to_mark"  #: for a person: neither right nor wrong yet
+TO_MARK = "to_mark"  #: for a person: neither right nor wrong yet
 
 ENOUGH = 10  #: students below which a discrimination is chance
 WEAK = 0.15  #: a discrimination below which a part is worth a look
@@ -57,7 +57,7 @@ class PartStatistics:
     @property
     def marked(self) -> int:
         """Number of answers that do not wait for a person."""
-        return self.answers - self.counts[WAITING]
+        return self.answers - self.counts[TO_MARK]
 
     def row(self) -> dict[str, Any]:
         """Return a line of ``parts.csv``: shares with four decimals."""
@@ -119,7 +119,7 @@ class Statistics:
     @property
     def needs_a_look(self) -> int:
         """Number of answers that a person must check: unreadable, rejected, or to be marked by hand."""
-        return self.counts["unreadable"] + self.rejected + self.counts[WAITING]
+        return self.counts["unreadable"] + self.rejected + self.counts[TO_MARK]
 
     @property
     def exercises(self) -> tuple[str, ...]:
@@ -179,7 +179,7 @@ def measure(marks: Marks, sheet_order: Mapping[str, Sequence[str]] | None = None
     """
     families = np.array([VERDICTS.index(family_of(v)) for v in marks.verdicts], dtype=int)
     family = families[marks.verdict]
-    every, marks = marks, marked_lines(marks, family != VERDICTS.index(WAITING))
+    every, marks = marks, marked_lines(marks, family != VERDICTS.index(TO_MARK))
     n = len(marks.parts)
     answers, marked = np.bincount(every.part, minlength=n), np.bincount(marks.part, minlength=n)
     codes = every.part * len(VERDICTS) + family

@@ -21,7 +21,7 @@ from coursework.gradebook.statistics.measures import (
     BINS,
     ENOUGH,
     MISTAKE_COLUMNS,
-    WAITING,
+    TO_MARK,
     WEAK,
     MistakeStatistics,
     PartStatistics,
@@ -100,8 +100,8 @@ class _StatisticsPage:
             (self.verdicts["unreadable"], self._number(wording.counts["unreadable"])),
             (self.texts["rejected"], self._number(wording.rejected)),
         ]
-        if wording.counts[WAITING]:
-            rows.append((self.texts["to_mark"], self._number(wording.counts[WAITING])))
+        if wording.counts[TO_MARK]:
+            rows.append((self.texts["to_mark"], self._number(wording.counts[TO_MARK])))
         if percents.size:
             rows.append((self.texts["mean_percent"], self._percent(percents.mean() / 100)))
             rows.append((self.texts["median_percent"], self._percent(np.median(percents) / 100)))
@@ -253,7 +253,7 @@ class _StatisticsPage:
 
     def _to_look_at(self) -> str:
         text, reading = self.statistics, self.texts["reading"]
-        waiting, rest = text.counts[WAITING], text.needs_a_look - text.counts[WAITING]
+        waiting, rest = text.counts[TO_MARK], text.needs_a_look - text.counts[TO_MARK]
         look = reading["look"].format(
             total=rest, unreadable=text.counts["unreadable"], rejected=text.rejected
         )

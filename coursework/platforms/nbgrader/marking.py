@@ -15,11 +15,11 @@ from coursework.gradebook.graded_sheet import Graded
 from coursework.gradebook.notebooks import read_notebook
 from coursework.gradebook.rows import Rejected
 from coursework.issuing.issued import Issued
+from coursework.marking.mark import WAITING
 from coursework.messages import Message
 from coursework.platforms.nbgrader import outputs as cell_outputs
 from coursework.platforms.nbgrader.cells import answers_id, grade_id
 from coursework.platforms.nbgrader.outputs import Output
-from coursework.rendering.feedback import WAITING
 
 _EPSILON = 1e-9  #: points
 

@@ -21,7 +21,7 @@ from coursework.gradebook.graded_sheet import Graded
 from coursework.issuing.issued import Issued
 from coursework.language.numbers import localise, significant, unit_text
 from coursework.language.words import quoted
-from coursework.marking.mark import Mark
+from coursework.marking.mark import WAITING, Mark
 from coursework.model import Part
 from coursework.sheets.answer_sheet import answer_text
 from coursework.sheets.handout import handout
@@ -131,7 +131,7 @@ def sign_of(mark: Mark) -> str:
     """Return the state of an answer for a table: ``full``, ``part``, ``none``, ``wait`` or ``missing``; empty where it does not count."""
     if mark.verdict == "missing":
         return "missing"
-    if mark.verdict in ("unreadable", "to_mark"):
+    if mark.verdict in WAITING:
         return "wait"
     if not mark.out_of and not mark.points:
         return ""  # it does not count
@@ -165,7 +165,7 @@ def requested_decision(request: Request, mark: Mark) -> tuple[str, float | None]
     """
     asked_for, texts = request.form.text("do"), request.words["queue"]
     if asked_for == "refuse":
-        return (GIVEN, 0.0) if mark.verdict in ("unreadable", "to_mark") else (KEPT, None)
+        return (GIVEN, 0.0) if mark.verdict in WAITING else (KEPT, None)
     if asked_for in _KINDS:
         return _KINDS[asked_for], None
     if asked_for != "points" and not asked_for.startswith("give:"):
