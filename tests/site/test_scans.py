@@ -10,12 +10,12 @@ import zipfile
 
 import cv2
 import pytest
-from desk_class import EXERCISE, OTHER, DeskClass, field, told
+from desk_class import EXERCISE, OTHER, STUDENTS, DeskClass, field, told
 from scanned_class import as_picture, read_told
 from site_people import TEACHER, ZOE
 from sqlalchemy import select
 
-from coursework.database.assignments import issued_content
+from coursework.database.assignments import issued_content, put_issued
 from coursework.database.erasing import erase
 from coursework.database.scans import pages_scanned
 from coursework.database.tables import person
@@ -185,3 +185,17 @@ def test_an_answer_that_is_a_picture_is_shown_on_the_desk(desk):
     page = desk.page(TEACHER, "/queue", exercise=EXERCISE, part="theta4")
     address = html.unescape(re.search(r'<img src="(/desk/[^"]*crop[^"]*)"', page.text)[1])
     assert desk.browser(TEACHER).get(address).headers["content-type"] == "image/png"
+
+
+def test_scans_of_an_anonymous_exam_are_told_by_codes(desk):
+    """Before anything is marked too: who types an answer does not know whose it is."""
+    codes = {name: f"KKK-{k}{k}{k}" for k, name in enumerate(STUDENTS, 2)}
+    with desk.site.store.begin() as connection:
+        content = issued_content(connection, desk.number)
+        stated = {**content["assignment"], "anonymous": True}
+        put_issued(connection, {**content, "assignment": stated, "codes": codes})
+    send(desk, ("scan.png", picture(desk, "Ada", theta4="~104.6")))
+    for page in (desk.page(TEACHER, "/scans"), desk.page(TEACHER, "/scans/queue")):
+        text = page.text.replace(TEACHER, "")
+        assert not re.search(rf"[>\s](?:{'|'.join(STUDENTS)})\b", text)
+        assert "KKK-" in text
