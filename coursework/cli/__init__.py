@@ -13,7 +13,7 @@ from coursework.cli.options import BAD, DONE, complain
 from coursework.cli.printing import problem_of
 from coursework.errors import CourseworkError
 from coursework.language.environment import language_of
-from coursework.messages import Message, localised, messages_in
+from coursework.messages import Message, localised, messages_in, translations
 from coursework.system.ending import Ended, end_cleanly, has_ended, leave
 from coursework.system.visible import visible_streams
 
@@ -31,7 +31,8 @@ def run(arguments: Sequence[str]) -> int:
     for stream in (sys.stdout, sys.stderr):
         if hasattr(stream, "reconfigure"):
             stream.reconfigure(encoding="utf-8", errors="replace")
-    with visible_streams(), messages_in(language_of(os.environ) or "en"):
+    lang = language_of(os.environ)
+    with visible_streams(), messages_in(lang if translations(lang) else "en"):
         return _run(arguments)
 
 
