@@ -3,6 +3,7 @@
 import mpmath
 import numpy as np
 import pytest
+from swept_turn import times
 from tables import each_row
 
 import coursework
@@ -69,7 +70,6 @@ def exact(given):
         far, near = place(r3 + r2), place(r3 - r2)
         # The crank points along OB when stretched out, the other way when folded back.
         arc = mpmath.degrees(abs(mpmath.arg(far[0] / -near[0])))
-        turn = 2 * mpmath.pi / w2
         return {
             "theta2": mpmath.degrees(mpmath.arg(A)),
             "theta3": mpmath.degrees(mpmath.arg(B - A)),
@@ -82,12 +82,8 @@ def exact(given):
             "v_C": v,
             "a_C": acceleration,
             "stroke": abs(mpmath.re(far[1] - near[1])),
-            "alpha": 360 - arc,
-            "beta": arc,
-            "Q": (360 - arc) / arc,
-            "T": turn,
-            "t_advance": turn * (360 - arc) / 360,
-            "t_return": turn * arc / 360,
+            **times(arc, w2),
+            "T": 2 * mpmath.pi / w2,
             "mechanical_advantage": abs(r2 * w2 / v),
         }
 
