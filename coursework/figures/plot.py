@@ -12,7 +12,7 @@ from functools import cached_property, lru_cache
 import numpy as np
 
 from coursework.errors import WrongValue
-from coursework.figures.ink import number
+from coursework.figures.ink import number, pair
 from coursework.figures.text import SIZE, LabelText, MeasuredRun, read, words
 from coursework.figures.writing import accents, as_outlines
 from coursework.language.numbers import localise, significant
@@ -192,7 +192,7 @@ class Plot:
                 'stroke-width="0.3" stroke-dasharray="1.4 1"/>'
             )
         curve = "".join(
-            "M" + "L".join(f"{number(self._x(a))} {number(y(b))}" for a, b in run)
+            "M" + "L".join(map(pair, _thinned([complex(self._x(a), y(b)) for a, b in run])))
             for run in _runs(np.asarray(self.horizontal.values, dtype=float), values, panel.unit == "°")
         )
         out.append(
@@ -337,3 +337,23 @@ def _runs(x: np.ndarray, y: np.ndarray, turns: bool) -> list[list[tuple[float, f
             runs[-1].append((a, b))
         before = b
     return [run for run in runs if len(run) > 1]
+
+
+_DENSE = 1000  #: points from which on a curve is thinned
+_SEEN = 0.01  #: mm by which it may then be off
+
+
+def _thinned(points: list[complex]) -> list[complex]:
+    """Return a dense curve without the points that lie on the line between others."""
+    if len(points) <= _DENSE:
+        return points
+    z, kept, left = np.array(points), {0, len(points) - 1}, [(0, len(points) - 1)]
+    while left:
+        first, last = left.pop()
+        chord, rest = z[last] - z[first], z[first + 1 : last] - z[first]
+        off = np.abs((rest * chord.conjugate()).imag) / abs(chord) if chord else np.abs(rest)
+        if off.size and off.max() > _SEEN:
+            middle = first + 1 + int(off.argmax())
+            kept.add(middle)
+            left += [(first, middle), (middle, last)]
+    return [points[k] for k in sorted(kept)]

@@ -51,6 +51,19 @@ def test_a_curve_is_drawn_to_scale_and_the_same_twice():
     assert (step * [1, -1] > 0).all()
 
 
+def test_a_dense_curve_is_drawn_with_the_points_that_are_seen():
+    def drawn(count):
+        x = np.linspace(0, 360, count)
+        y = np.sin(np.radians(x)) + np.where(abs(x - 200) < 2, 0.5, 0)  # smooth, with a step
+        return points_of(Plot(Axis("x", "", x), [Axis("y", "mm", y)]).svg())[0]
+
+    thin, usual = np.array(drawn(7001)), np.array(drawn(1000))
+    assert len(usual) == 1000
+    assert 30 < len(thin) < 300
+    smooth = np.abs(np.gradient(usual[:, 1])) < 0.3
+    assert np.abs(np.interp(usual[:, 0], thin[:, 0], thin[:, 1]) - usual[:, 1])[smooth].max() < 0.05
+
+
 def test_a_curve_is_cut_where_it_has_no_value_and_where_a_direction_turns_over():
     x = np.arange(8.0)
     y = np.array([1, 2, np.nan, 3, 4, 5, 4, 3.0])
