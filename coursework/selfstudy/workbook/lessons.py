@@ -72,11 +72,14 @@ def _with_values(folder: Folder, name: str, text: str, file: str) -> str:
     Raises
     ------
     BadCourse
-        The module computes no such value.
+        The module computes no such value, or fails.
     """
     if not _VALUE.search(text):
         return text
-    values = folder.lesson_module(name).values()
+    try:
+        values: Mapping[str, str] = getattr(folder.lesson_module(name), "values", dict)()
+    except Exception as fault:
+        raise BadCourse(f"{file}: values() of {name}.py fails: {type(fault).__name__}: {fault}") from fault
 
     def write(found: re.Match[str]) -> str:
         if found[1] not in values:
