@@ -32,6 +32,10 @@ EXERCISE = Exercise(
         "omega": drawn(2, 20, unit="rad/s"),
     },
     constraints=(pin_off_the_axes,),
-    parts=(Part("x", unit="mm"), Part("y", unit="mm"), Part("v", unit="mm/s", points=2)),
+    parts=(
+        Part("x", unit="mm"),
+        Part("y", unit="mm"),
+        Part("v", unit="mm/s", points=2),
+    ),
     figure=figure,
 )
