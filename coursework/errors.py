@@ -133,10 +133,10 @@ def cut_short(text: str, most: int) -> str:
 
 
 def bare_letters(text: str) -> str:
-    """Return a text without case and accents."""
+    """Return a text without case and accents, and with straight apostrophes."""
     import unicodedata
 
-    letters = unicodedata.normalize("NFKD", text).casefold()
+    letters = unicodedata.normalize("NFKD", text).casefold().replace("’", "'")
     return "".join(letter for letter in letters if not unicodedata.combining(letter))
 
 

@@ -29,7 +29,7 @@ def unwrapped(value: Any) -> Any:
 
 def folded(text: Any) -> str:
     """Return a text without case, accents and closing punctuation."""
-    bare = bare_letters(str(text).translate(_DASHES)).replace("’", "'")
+    bare = bare_letters(str(text).translate(_DASHES))
     return " ".join(bare.strip(" .!,;").split())
 
 

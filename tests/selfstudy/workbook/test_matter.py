@@ -5,7 +5,8 @@ from __future__ import annotations
 import pytest
 
 import coursework
-from coursework.errors import BadCourse
+from coursework.errors import BadCourse, bare_letters
+from coursework.language.typography import typeset
 from coursework.markup.links import TERM, links
 from coursework.selfstudy.workbook import lesson_source as source
 from coursework.selfstudy.workbook.concordance import (
@@ -46,6 +47,16 @@ def test_words_of_the_index_are_marked_where_a_lesson_has_them_first():
         'two [joints](#word "joint"); no jointed bar.'
     )
     assert found.pieces[2].text == 'A joint graph. [Watt](#word "Watt, James") said.'
+
+
+def test_an_entry_as_it_is_printed_is_the_entry_of_the_list(course):
+    """The index of a text sorts by the printed entry, the lists behind the book by the stated one."""
+    entries = [
+        (lang, one.entry) for lang in course.folder.languages for one in entries_of(course.folder, lang)
+    ]
+    assert any("'" in entry for _, entry in entries)
+    keys = {entry: bare_letters(typeset(entry, lang)) for lang, entry in entries}
+    assert [e for e, key in keys.items() if key.replace("\N{NO-BREAK SPACE}", " ") != bare_letters(e)] == []
 
 
 def test_the_index_has_four_hundred_entries_and_references_lead_to_them(course):
