@@ -42,6 +42,10 @@ SISTERS = {
 }
 
 
+#: What an error is the difference of, in its own unit: the structural error of a linkage, of angles of up to a turn.
+DIFFERENCES = {"worst": 360.0}
+
+
 class Formulas:
     """The textbook formulas of an exercise for one variant, and the places where they are tried."""
 
@@ -86,7 +90,7 @@ class Formulas:
 
     def allowed(self, given, name, value):
         """By how much the last digit of the value, and of each given number, may move it."""
-        moved = abs(value)
+        moved = abs(value) + DIFFERENCES.get(name, 0.0)
         for n, x in given.items():
             if isinstance(x, float) and x:
                 near = self.exact({**given, n: mp.mpf(x) * (1 + _STEP)}, name)

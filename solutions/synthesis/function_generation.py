@@ -209,17 +209,26 @@ _STEPS = 180  #: of the range, in which the motion is followed
 _OPEN = 180.0  #: degrees, the error of a linkage that does not close all along
 
 
-def _at(share, r1, r2, r3, r4, law, theta2_0, range2, theta4_0, range4):
-    """At a share of the range: the error in either assembly, and the lesser angle of coupler and rocker, degrees."""
+def _at(share, K1, K2, level, law, theta2_0, range2, theta4_0, range4):
+    """At a share of the range: the error in either assembly, and the lesser angle of coupler and rocker, degrees.
+
+    By Freudenstein's equation, since links without end, or of no length, cost a triangle of lengths its digits.
+    ``level`` is ``K2 cos(theta2) - K3`` in the middle of the range.
+    """
     a, b = _end(law, 0), _end(law, 1)
     rise = (_of(law, a + (b - a) * share) - _of(law, a)) / (_of(law, b) - _of(law, a))
-    CA = polar(r2, theta2_0 + range2 * share) - r1
-    at_C = (abs(CA) ** 2 + r4**2 - r3**2) / (2 * abs(CA) * r4)
-    at_B = (r3**2 + r4**2 - abs(CA) ** 2) / (2 * r3 * r4)
-    closes = abs(at_C) <= 1
-    corner, mu = (acos(np.where(closes, cosine, 1.0)[()]) for cosine in (at_C, at_B))
-    ahead = (wrap(angle(CA) + side * corner - theta4_0 - range4 * rise) for side in (-1, 1))
-    return (*(np.where(closes, abs(error), _OPEN)[()] for error in ahead), np.minimum(mu, 180 - mu))
+    crank = polar(1.0, theta2_0 + range2 * share)
+    to_C = K1 - crank
+    cosine = (level + K2 * _cosines(theta2_0 + range2 / 2, range2 * (share - 0.5))) / abs(to_C)
+    closes = abs(cosine) <= 1
+    corner = acos(np.where(closes, cosine, 1.0)[()])
+    rockers = [angle(to_C) + side * corner for side in (-1, 1)]
+    ahead = (wrap(theta4 - theta4_0 - range4 * rise) for theta4 in rockers)
+    mu = abs(angle((K1 * K2 - K2 * crank) * polar(1.0, -rockers[0]) + K1))
+    return (
+        *(np.where(closes, abs(error), _OPEN)[()] for error in ahead),
+        np.where(closes, np.minimum(mu, 180 - mu), 0.0)[()],
+    )
 
 
 def _motion(*linkage):
@@ -233,8 +242,9 @@ def _motion(*linkage):
     return np.minimum(first.max(axis=-1), second.max(axis=-1))[()], mu.min(axis=-1)[()]
 
 
-def _moved(r1, r2, r3, r4, law, theta2_0, _sweep2, theta4_0, _sweep4):
-    return _motion(r1, r2, r3, r4, law, wrap(theta2_0), _sweep2, wrap(theta4_0), _sweep4)
+def _moved(K1, K2, theta2_2, theta4_2, law, theta2_0, _sweep2, theta4_0, _sweep4):
+    level = K1 * cos(theta4_2) - cos(theta2_2 - theta4_2)
+    return _motion(K1, K2, level, law, wrap(theta2_0), _sweep2, wrap(theta4_0), _sweep4)
 
 
 def worst(_moved):
@@ -247,6 +257,13 @@ def least_transmission(_moved):
 
 
 LENGTHS = ("r2", "r3", "r4")
+
+
+def _motion_of(r1, r2, r3, r4, law, theta2_0, range2, theta4_0, range4):
+    """The motion of a linkage of these lengths."""
+    K3 = (r1**2 + r2**2 + r4**2 - r3**2) / (2 * r2 * r4)
+    level = r1 / r4 * cos(theta2_0 + range2 / 2) - K3
+    return _motion(r1 / r2, r1 / r4, level, law, theta2_0, range2, theta4_0, range4)
 
 
 @judge
@@ -267,13 +284,13 @@ def generates_the_function(answers, r1, law, theta2_0, range2, theta4_0, range4,
 def _judged(r1, r2, r3, r4, demands, delta, K1, K2):
     if min(r2, r3, r4) <= 0:
         return Judged(0.0, "does_not_close"), _OPEN
-    deviation = float(_motion(r1, r2, r3, r4, *demands)[0])
+    deviation = float(_motion_of(r1, r2, r3, r4, *demands)[0])
     found = {"deviation": deviation} if deviation < _OPEN else {}
     if deviation <= delta:
         return Judged(1.0, "", found), deviation
     if abs(r2 - r1 * K1) < 0.01 * r2 and abs(r4 - r1 * K2) < 0.01 * r4:
         return Judged(0.0, "ratios_upside_down", found), deviation
-    if float(_motion(r1, r4, r3, r2, *demands)[0]) <= delta:
+    if float(_motion_of(r1, r4, r3, r2, *demands)[0]) <= delta:
         return Judged(0.0, "crank_and_rocker_exchanged", found), deviation
     if deviation == _OPEN:
         return Judged(0.0, "does_not_close"), deviation
