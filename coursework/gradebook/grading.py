@@ -196,6 +196,7 @@ def _write_counts(
     for row in rows:
         summary.write(row)
     if changes is not None:
+        tables.replace_first(changes)  # stopped after the summary, the marks before would be gone
         for change in history.rows(rows):
             changes.write(change)
     for row in gradebook.rejected_rows(book.rejected):
