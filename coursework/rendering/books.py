@@ -20,7 +20,15 @@ from coursework.rendering import html, papers, pdf, views
 from coursework.rendering.environment import render
 from coursework.rendering.keeping import keeping
 from coursework.rendering.surface import surface
-from coursework.sheets.book import BlanksPiece, Book, BookChapter, BookExercise, LessonText, Piece
+from coursework.sheets.book import (
+    BlanksPiece,
+    Book,
+    BookChapter,
+    BookExercise,
+    DrawnPiece,
+    LessonText,
+    Piece,
+)
 from coursework.sheets.paper import Paper, PaperHeading, SolutionPaper
 
 _MARKS = {TERM: INDEX, WORD: f"#{WORD}", MACHINE: f"#{MACHINE}"}  #: where the marks of the index lead to
@@ -108,12 +116,17 @@ def _typst_pieces(
 
     names = _of_book(book) | {
         "lesson": lesson,
-        "pieces": [_with_kind(piece) for piece in pieces if not isinstance(piece, BlanksPiece)],
+        "pieces": [_with_kind(piece) for piece in pieces if _is_printed(piece)],
         "tall": _TALL,
         "floats": floats,
     }
     names["relinked"] = lambda text: relinked(text, write)
     return Markup(render(env, "book/_pieces.typ.j2", names))
+
+
+def _is_printed(piece: Piece) -> bool:
+    """Return whether paper shows a piece."""
+    return piece.on_paper if isinstance(piece, DrawnPiece) else not isinstance(piece, BlanksPiece)
 
 
 def _cited(book: Book, lesson: LessonText, link: TextLink, number: str) -> str:

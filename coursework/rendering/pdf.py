@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import json
+import re
 import threading
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from functools import lru_cache, partial
+from itertools import count
 from pathlib import Path
 from typing import Any
 
@@ -27,6 +29,12 @@ from coursework.sheets.sheet import AnswerSheet, FeedbackSheet
 from coursework.system.memory import little_memory
 
 _LOCAL = threading.local()
+_TAGGED: Mapping[str, Any] = {"format": "pdf", "pdf_standards": ["a-2a", "ua-1"], "timestamp": 0}
+_MOVING = re.compile(
+    r"#(?:in-room|lesson-figure)\("
+)  #: where a block begins that moves to where there is room
+_SETTLED = re.compile(r"^#let settled = .*$", re.MULTILINE)
+_LAYOUTS = 4  #: of a document whose blocks move
 _FORGETTING = 40  #: documents, a third of a millisecond each
 
 
@@ -148,6 +156,29 @@ def compile_pdf(typst_source: str, folders: Sequence[Path] = ()) -> bytes:
         return _written(_compiler(fonts_of(folders)), files(drawn(typst_source, folders)))
 
 
+def compile_settled(typst_source: str, folders: Sequence[Path] = ()) -> bytes:
+    """Return the PDF of a source whose blocks move to the next page where they find no room, as :func:`compile_pdf` does.
+
+    Where blocks move is chosen from a layout, and moves what comes after. In a long document the layouts do not settle
+    within the typesetter's attempts, and page numbers would be those of the layout before: then the last choices are kept.
+    """
+    counter = count(1)
+    numbered = _MOVING.sub(lambda call: f'{call[0]}number: "{next(counter)}", ', drawn(typst_source, folders))
+    document = b""
+    with _complaints():
+        for _ in range(_LAYOUTS):
+            written = files(numbered)
+            # Asked before it writes the file, the compiler lays the pages out once.
+            compiler = _opened(written, folders)
+            chosen = json.loads(compiler.query("<chosen>", field="value"))
+            document, warnings = compiler.compile_with_warnings(input=written, **_TAGGED)
+            if not any("converge" in str(warning) for warning in warnings):
+                break
+            settled = "".join(f'"{k}": ({str(kept).lower()}, {left:.3f}mm), ' for k, kept, left in chosen)
+            numbered = _SETTLED.sub(f"#let settled = ({settled})", numbered)
+    return document
+
+
 def compile_pictures(typst_source: str, folders: Sequence[Path], ppi: float) -> list[bytes]:
     """Return the pages of a source as PNG, of so many pixels an inch.
 
@@ -166,13 +197,11 @@ def compile_booklet(
 
     Raises BadStatement as :func:`compile_pdf` does.
     """
-    import typst
 
     written = files(drawn(typst_source, folders))
     with _complaints(), little_memory():
         # Asked of the compiler that then writes the file, the pages are laid out once.
-        opened: Any = typst.Compiler  # takes the files by name as well, which its types do not say
-        compiler = opened(input=written, font_paths=list(fonts_of(folders)), ignore_system_fonts=True)
+        compiler = _opened(written, folders)
         ends = json.loads(compiler.query("<sheet-last>", field="value"))
         document = _written(compiler, written)
         # The typesetter remembers what the last documents were made of, and a booklet is large: small
@@ -183,9 +212,17 @@ def compile_booklet(
     return document, tuple(zip(starts, ends, strict=True))
 
 
+def _opened(sources: Mapping[str, bytes], folders: Sequence[Path]) -> Any:
+    """Return a compiler of files by name, which can be asked as well."""
+    import typst
+
+    opened: Any = typst.Compiler  # takes the files by name as well, which its types do not say
+    return opened(input=sources, font_paths=list(fonts_of(folders)), ignore_system_fonts=True)
+
+
 def _written(compiler: Any, sources: Mapping[str, bytes]) -> bytes:
     """Return the tagged PDF that a compiler makes of files by name."""
-    return compiler.compile(input=sources, format="pdf", pdf_standards=["a-2a", "ua-1"], timestamp=0)
+    return compiler.compile(input=sources, **_TAGGED)
 
 
 @contextmanager

@@ -150,7 +150,7 @@ class Renderer:
         from coursework.rendering import books, pdf
 
         source = books.typst_source(self.template_folders, book, self.paper, apart=apart)
-        return pdf.compile_pdf(source, self.template_folders)
+        return pdf.compile_settled(source, self.template_folders)
 
     def book_pages(self, book: Book, *, solutions: bool = True) -> Mapping[str, Callable[[], str]]:
         """Return a book as pages by their files, each a function that makes it; they fetch nothing and lead to one another."""

@@ -8,12 +8,13 @@ import numpy as np
 import coursework
 from coursework.authoring.linkage_files import LINKAGES
 from coursework.degrees import polar
-from coursework.figures import Figure, angle_mark, disc, line, note, shape
+from coursework.figures import Figure, angle_mark, disc, line, note, shape, trace
 from coursework.linkages.compiled import compiled
 
-from ._panels import moved
+from ._panels import TURN, moved
 
 FINE = np.arange(0.0, 360.0, 0.25)  #: a turn of a crank, degrees
+ROUND = np.array(TURN, float)  #: the same, as many instants as a figure that moves has
 
 
 @cache
@@ -52,6 +53,18 @@ def scheme(name, **changed):
         e for e in elements if not isinstance(e, angle_mark) and not (isinstance(e, line) and e.dashed)
     ]
     return elements, {e.label.replace("_", ""): e.p for e in elements if hasattr(e, "toward") and e.label}
+
+
+def in_motion(name, driven, point="", driver="theta2", **changed):
+    """The scheme of a mechanism at values of what drives it, in a cycle, with the path of a point."""
+    way = tuple(map(complex, path(name, point, **{driver: driven}, **changed))) if point else ()
+    drawn = [trace((*way, way[0]))] if point else []
+    return [Figure(*drawn, *scheme(name, **{driver: float(value)}, **changed)[0]) for value in driven]
+
+
+def to_and_fro(low, high):
+    """Values from one end to the other and back, slow at the ends."""
+    return (low + high) / 2 - (high - low) / 2 * np.cos(np.radians(np.arange(5.0, 365.0, 10.0)))
 
 
 def counted(name):

@@ -7,6 +7,7 @@ from coursework.figures import disc, note, shape, trace
 
 from ._machines import (
     FINE,
+    ROUND,
     beside,
     box,
     capsule,
@@ -14,6 +15,7 @@ from ._machines import (
     data,
     given,
     heading,
+    in_motion,
     joints,
     open_line,
     path,
@@ -24,6 +26,7 @@ from ._machines import (
     solved,
     stays,
     swing,
+    to_and_fro,
 )
 
 # ------------------------------------------------------------------ windscreen wiper
@@ -255,6 +258,29 @@ def level_luffing_crane():
     ]
     way = path("level_luffing_crane", "P", theta2=np.arange(46.0, 91.0))
     return beside(real, [trace(tuple(map(complex, way))), *elements], paper_mm=(165, 110))
+
+
+# ------------------------------------------------------------------ schemes in motion
+
+
+def windscreen_wiper_moves():
+    """The wiper drive, in motion."""
+    return in_motion("windscreen_wiper", ROUND)
+
+
+def bus_wiper_moves():
+    """The parallelogram wiper, in motion."""
+    return in_motion("bus_wiper", ROUND, "P")
+
+
+def tipper_moves():
+    """The tipper, in motion."""
+    return in_motion("tipper", to_and_fro(DOWN, UP), "G", "L", **TIPPER)
+
+
+def level_luffing_crane_moves():
+    """The crane's jib, in motion."""
+    return in_motion("level_luffing_crane", to_and_fro(48.0, 90.0), "P")
 
 
 # ------------------------------------------------------------------ numbers

@@ -7,6 +7,7 @@ from coursework.figures import disc, note, shape, trace
 
 from ._machines import (
     FINE,
+    ROUND,
     beside,
     box,
     capsule,
@@ -14,6 +15,7 @@ from ._machines import (
     data,
     enlarged,
     given,
+    in_motion,
     joints,
     open_line,
     path,
@@ -21,6 +23,7 @@ from ._machines import (
     scheme,
     solved,
     swing,
+    to_and_fro,
 )
 
 # ------------------------------------------------------------------ claw of a camera
@@ -196,6 +199,29 @@ def _leg(z, crank, shade):
         capsule(z["A"], z["C"], 5.5, 4, crank),
         *joints([(z[n], 2.4) for n in "CHFE"]),
     ]
+
+
+# ------------------------------------------------------------------ schemes in motion
+
+
+def film_claw_moves():
+    """The claw, in motion."""
+    return in_motion("film_claw", -ROUND, "P")
+
+
+def hoecken_moves():
+    """Hoecken's linkage, in motion."""
+    return in_motion("hoecken", ROUND, "P", r2=RAKE)
+
+
+def peaucellier_moves():
+    """Peaucellier's cell, in motion."""
+    return in_motion("peaucellier", to_and_fro(-45.0, 45.0), "P")
+
+
+def klann_leg_moves():
+    """The leg, in motion."""
+    return in_motion("klann_leg", ROUND, "G", **TOY)
 
 
 # ------------------------------------------------------------------ numbers

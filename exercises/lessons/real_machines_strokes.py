@@ -7,6 +7,7 @@ from coursework.figures import Figure, disc, note, shape, trace
 
 from ._machines import (
     FINE,
+    ROUND,
     beside,
     box,
     capsule,
@@ -14,6 +15,7 @@ from ._machines import (
     crossing,
     data,
     given,
+    in_motion,
     joints,
     open_line,
     path,
@@ -271,6 +273,29 @@ def _sprocket(centre, turned):
         box(gate + 6 + 26j, gate + 12 + 46j, "glass"),
         open_line(gate + 62j, *rim, rim[-1] + 40 * complex(polar(1.0, 210))),
     ]
+
+
+# ------------------------------------------------------------------ schemes in motion
+
+
+def shaper_moves():
+    """The shaper, in motion."""
+    return in_motion("shaper", ROUND, **SHAPER)
+
+
+def needle_bar_moves():
+    """Needle bar and take-up, in motion."""
+    return in_motion("needle_bar", ROUND, "P")
+
+
+def atkinson_engine_moves():
+    """Atkinson's engine, in motion."""
+    return in_motion("atkinson_engine", ROUND)
+
+
+def maltese_cross_moves():
+    """The cross in motion, nearly from the entry of the pin to its exit."""
+    return in_motion("maltese_cross", np.linspace(-43.0, 43.0, 36))
 
 
 # ------------------------------------------------------------------ schemes to be named

@@ -8,7 +8,7 @@ from typing import Any
 
 from coursework.course.folder import Folder
 from coursework.course.lessons import read_text
-from coursework.errors import BadCourse, bare_letters
+from coursework.errors import BadCourse, bare_letters, nearest
 from coursework.language.words import words
 from coursework.markup.links import TERM, links
 from coursework.selfstudy.workbook.concordance import person_entry, person_name
@@ -17,6 +17,7 @@ from coursework.selfstudy.workbook.numbering import around_tables
 from coursework.sheets.book import JointRow, JointsPiece, LessonText, Piece, ProsePiece, TablePiece, TitlePage
 
 _TITLE = re.compile(r"\A# +([^\n]*)\n*")
+_NUMBER = re.compile(r"\{=(\w+)\}")
 _SOURCE = "exercises/book"
 
 
@@ -50,13 +51,24 @@ def _part(folder: Folder, name: str, lang: str) -> LessonText:
     path = folder.book_place / f"{name}.{lang}.md"
     if not path.exists():
         raise BadCourse(f"{_SOURCE}/matter.toml names {name!r}: {folder.relative(path)} is missing")
-    text = read_text(path)
+    text = _numbered(folder, read_text(path), folder.relative(path))
     title_found = _TITLE.match(text)
     if title_found is None:
         raise BadCourse(f"{folder.relative(path)}, line 1: a page begins with its title, # TITLE")
     body = text[title_found.end() :]
     terms = tuple(dict.fromkeys(link.name for link in links(body) if link.kind == TERM))
     return LessonText(name, 0, lang, title_found[1], tuple(_pieces(body)), (), terms)
+
+
+def _numbered(folder: Folder, text: str, file: str) -> str:
+    """Return a page's text with ``{=NAME}`` replaced by the number of the lesson of that name."""
+
+    def write(found: re.Match[str]) -> str:
+        if found[1] not in folder.lessons:
+            raise BadCourse(f"{file}: no lesson {found[1]!r}{nearest(found[1], folder.lessons)}")
+        return str(1 + folder.lessons.index(found[1]))
+
+    return _NUMBER.sub(write, text)
 
 
 def _pieces(text: str) -> list[Piece]:

@@ -97,8 +97,8 @@ class LessonNumbers:
         return f"{self._lesson}.{self._counts[sort]}"
 
     def figure(self, piece: DrawnPiece) -> DrawnPiece:
-        """Return a figure with its number."""
-        return replace(piece, number=self._next("figure"))
+        """Return a figure with its number; one that no paper shows has none."""
+        return replace(piece, number=self._next("figure")) if piece.on_paper else piece
 
     def example(self, pieces: Sequence[Piece]) -> Iterator[Piece]:
         """Yield the pieces of a worked example; its head has its number."""

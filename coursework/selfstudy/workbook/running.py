@@ -8,7 +8,7 @@ import io
 import re
 import traceback
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from reprlib import repr as short
 from tempfile import TemporaryDirectory
@@ -36,6 +36,7 @@ STILLS = 4  #: instants of what moves that stand on paper
 _CELL = (82.0, 60.0)  #: the room of one of them, mm
 _ASKED = ("seed", "motion", "count")
 _TALL = "tall"  #: option of a lesson's own figure: its height on paper, mm
+_SCREEN = "screen"  #: option of a lesson's own figure: screens show it, and no paper
 
 
 def drawn(course: Course[Any], lesson: str, image: LessonImage, lang: str) -> DrawnPiece:
@@ -60,9 +61,9 @@ def _of_lesson(course: Course[Any], lesson: str, image: LessonImage, lang: str) 
             "the figure {name} has no caption, which describes it to those who cannot see it",
             name=image.name,
         )
-    for name in image.asked.keys() - {_TALL}:
+    for name in image.asked.keys() - {_TALL, _SCREEN}:
         raise BadInput(
-            "a picture has no option {name!r}{nearest}", name=name, nearest=nearest(name, (_TALL,))
+            "a picture has no option {name!r}{nearest}", name=name, nearest=nearest(name, (_TALL, _SCREEN))
         )
     tall = image.asked.get(_TALL, "0")
     if not tall.isdecimal():
@@ -71,10 +72,11 @@ def _of_lesson(course: Course[Any], lesson: str, image: LessonImage, lang: str) 
     if isinstance(created, Picture):
         created = created.beside(course.folder.lesson_place)
     text = plain_line(image.caption, lang)
+    on_paper = _SCREEN not in image.asked
     if isinstance(created, (Figure, Picture)):
-        return DrawnPiece(text, image.caption, figure=created, tall=float(tall))
+        return DrawnPiece(text, image.caption, figure=created, tall=float(tall), on_paper=on_paper)
     if isinstance(created, Sequence) and created and all(isinstance(item, Figure) for item in created):
-        return _moving(created, text, image.caption, lang)
+        return replace(_moving(created, text, image.caption, lang), on_paper=on_paper)
     raise BadCourse(
         f"{image.name}() gives a Figure, a Picture, or a list of Figures that follow one another; found {short(created)}"
     )

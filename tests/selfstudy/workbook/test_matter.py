@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 import pytest
 
 import coursework
@@ -102,4 +104,31 @@ def test_a_page_that_is_missing_is_told(small_course):
     (place / "matter.toml").write_text('front = ["preface"]\n', "utf-8")
     folder = coursework.open_course(small_course).folder
     with pytest.raises(BadCourse, match=r"names 'preface': exercises/book/preface\.en\.md is missing"):
+        matter_of(folder, "en", "front")
+
+
+def test_a_page_of_the_book_names_lessons_by_their_numbers(course):
+    """What stands before the chapters names no lesson by a number that is written by hand."""
+    pages = {
+        (part.name, lang): part
+        for lang in course.folder.languages
+        for part in matter_of(course.folder, lang, "front")
+    }
+    plan = "\n".join(piece.text for piece in pages["use", "en"].pieces)
+    last = len(course.folder.lessons)
+    assert f"lesson {last} |" in plan
+    for name, lang in pages:
+        path = course.folder.book_place / f"{name}.{lang}.md"
+        told = path.read_text(encoding="utf-8") if path.exists() else ""
+        by_hand = re.findall(r"(?:lessons?|leçons?) \d+(?! ?\.)", told)
+        assert {*by_hand} <= {"lesson 5", "leçon 5"}, path.name  # the one that explains numbers
+
+
+def test_a_page_of_the_book_that_numbers_no_lesson_is_told(small_course):
+    place = small_course / "exercises/book"
+    place.mkdir()
+    (place / "matter.toml").write_text('front = ["use"]\n')
+    (place / "use.en.md").write_text("# Use\n\nSee lesson {=pinss}.\n")
+    folder = coursework.open_course(small_course).folder
+    with pytest.raises(BadCourse, match=r"book/use\.en\.md: no lesson 'pinss'"):
         matter_of(folder, "en", "front")
