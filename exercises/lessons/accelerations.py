@@ -21,6 +21,8 @@ from coursework.figures import (
 )
 from coursework.kinematics.dyads import rrr
 
+from ._machines import rows_of
+
 R1, R2, R3, R4, THETA2, OMEGA2 = (
     200.0,
     60.0,
@@ -349,3 +351,30 @@ def polygon_with_coriolis():
         point(own, "a_4", toward=45),
         scale=1,
     )
+
+
+# ------------------------------------------------------------------ senses to be found
+
+#: The sense of the guide's rotation, 1 anticlockwise, and that of the sliding, 1 away from the pivot.
+SENSES = ((1, 1), (-1, 1), (1, -1), (-1, -1))
+
+
+def sides_of_coriolis():
+    """Four turning guides with a block that slides in them, and the two sides to choose from."""
+    drawings = []
+    for turns, slides in SENSES:
+        along = complex(polar(1.0, 60.0))
+        at = 60 * along
+        ends = (-30, 50) if turns > 0 else (50, -30)
+        drawings.append(
+            [
+                slot_link(0, 110 * along),
+                ground_pivot(0),
+                slider(at, 60.0),
+                vector(at, 34 * slides * along),
+                rotation_arrow(0, 28, 60 + ends[0], 60 + ends[1], r"\omega"),
+                note(at + 20j * along, "1"),
+                note(at - 20j * along, "2"),
+            ]
+        )
+    return Figure(*rows_of(drawings, 4, 100 + 100j), paper_mm=(165, 55))

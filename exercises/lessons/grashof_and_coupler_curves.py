@@ -23,6 +23,7 @@ from coursework.figures import (
 )
 from coursework.kinematics.dyads import rrr
 
+from ._machines import rows_of, unlettered
 from ._panels import TURN, closed, moved
 
 FINE = np.arange(0.0, 360.0, 3.0)
@@ -463,3 +464,22 @@ def straight_line():
             )
         )
     return found
+
+
+# ------------------------------------------------------------------ types to be named
+
+#: Frame, input, coupler, output, and the angle of the input in degrees.
+UNNAMED = (
+    ((46.0, 60.0, 26.0, 70.0), 80.0),
+    ((70.0, 26.0, 60.0, 46.0), 60.0),
+    ((70.0, 40.0, 70.0, 40.0), 60.0),
+    ((80.0, 50.0, 44.0, 60.0), 70.0),
+    ((26.0, 46.0, 70.0, 60.0), 75.0),
+    ((70.0, 46.0, 60.0, 26.0), 60.0),
+)
+
+
+def types_to_be_named():
+    """Six linkages without a name, the input on the left pivot."""
+    drawings = [unlettered(_drawn(*_linkage(bars_, at), numbers=False)) for bars_, at in UNNAMED]
+    return Figure(*rows_of(drawings, 3, 100 + 80j), paper_mm=(165, 100))

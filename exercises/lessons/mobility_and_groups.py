@@ -21,6 +21,7 @@ from coursework.figures import (
 from coursework.structure.library import LIBRARY
 from coursework.structure.scheme import kinematic_scheme
 
+from ._machines import counted, rows_of, scheme, unlettered
 from ._panels import closed, graph, moved, panels
 
 WIDE = (150, 75)
@@ -344,3 +345,28 @@ def figure_14_by_5():
         line(E - 24 * way, E + 24 * way, dashed=True, label="5"), slider(E, float(angle(way)), "6"),
         ground_pivot(O, "O"), ground_pivot(C, "C"), pin(A, "A"), pin(B, "B"), pin(E, "E"), paper_mm=(80, 75),
     )  # fmt: skip
+
+
+# ------------------------------------------------------------------ schemes to be counted
+
+UNNAMED = (
+    ("klann_leg", {"theta2": 115.0}),
+    ("class_three_slider", {}),
+    ("two_loops", {}),
+    ("atkinson_engine", {"theta2": 75.0}),
+)
+
+
+def schemes_to_be_counted():
+    """Four schemes without letters."""
+    drawings = [unlettered(scheme(name, **changed)[0]) for name, changed in UNNAMED]
+    return Figure(*rows_of(drawings, 4, 100 + 90j), paper_mm=(165, 60))
+
+
+def values():
+    """How many bodies move in each of them, and how many lower pairs join them."""
+    found = {}
+    for letter, (name, _) in zip("abcd", UNNAMED, strict=True):
+        bodies, pairs = counted(name)
+        found |= {f"{letter}_bodies": f"{bodies}", f"{letter}_pairs": f"{pairs}"}
+    return found

@@ -38,6 +38,8 @@ from coursework.figures.polygons import (
 from coursework.figures.polygons.construction import Construction
 from coursework.kinematics.dyads import rrp, rrr
 
+from ._machines import rows_of
+
 
 def _arcs(center, radius, start, middle):
     """The two arcs of the crank, anticlockwise: alpha from start to middle, beta the rest."""
@@ -264,3 +266,32 @@ def _moving(theta) -> tuple[Element, ...]:
         pin(D, "D"),
         pin(E, "E"),
     )
+
+
+# ------------------------------------------------------------------ strokes to be compared
+
+#: Height of the piston's line above the crank's pivot, mm, and the sense of the crank, 1 anticlockwise.
+STROKES = ((30.0, 1), (30.0, -1), (-30.0, 1), (0.0, 1))
+
+
+def strokes_to_be_compared():
+    """Four slider-cranks with the sense of their cranks: which strokes take longer?"""
+    drawings = []
+    for e, turns in STROKES:
+        A = complex(polar(35.0, 120.0))
+        C = complex((90.0**2 - (e - A.imag) ** 2) ** 0.5 + A.real, e)
+        ends = (190, 270) if turns > 0 else (270, 190)
+        drawings.append(
+            [
+                circle(0, 35.0, dashed=True),
+                rail(complex(40, e), complex(130, e)),
+                link(0, A),
+                link(A, C),
+                slider(C),
+                rotation_arrow(0, 25.0, *ends, r"\omega"),
+                ground_pivot(0),
+                pin(A),
+                pin(C),
+            ]
+        )
+    return Figure(*rows_of(drawings, 4, 100 + 70j), paper_mm=(165, 45))

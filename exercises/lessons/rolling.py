@@ -24,6 +24,7 @@ from coursework.figures import (
 )
 
 from ._joint_graphs import bodies, joint
+from ._machines import rows_of
 
 R, r = 40.0, 16.0  #: of the ball reducer that the figures show, mm
 D, R2, R3, B, THETA1 = 30.0, 25.0, 15.0, 45.0, 110.0  #: of Havens' gear, mm and degrees
@@ -373,3 +374,27 @@ def havens_at_I():
         point(at["I"] + part, "K"),
         paper_mm=_SIZE,
     )
+
+
+# ------------------------------------------------------------------ trains to be read
+
+
+def trains_to_be_read():
+    """Four trains of wheels by their pitch circles, the driver on the left or inside, with its sense."""
+
+    def drawn(*wheels, inner=()):
+        elements = [circle(at, r) for at, r in wheels]
+        elements += [ground_pivot(at) for at, r in wheels]
+        return [
+            *elements,
+            *(circle(at, r, dashed=True) for at, r in inner),
+            rotation_arrow(0, 12.0, -40, 220, r"\omega"),
+        ]
+
+    drawings = [
+        drawn((0, 20.0), (60, 40.0)),
+        drawn((0, 20.0), (30, 10.0), (80, 40.0)),
+        drawn((0, 20.0), (-20, 40.0)),
+        drawn((0, 15.0), (45, 30.0), (95, 40.0), inner=((45, 10.0),)),
+    ]
+    return Figure(*rows_of(drawings, 4, 100 + 80j), paper_mm=(165, 60))

@@ -1,5 +1,7 @@
 """Figures of the lesson on the slider-crank: the mechanism, its loop, its polygons; then six bars with a slider."""
 
+import numpy as np
+
 from coursework.degrees import angle, polar
 from coursework.figures import (
     Figure,
@@ -15,6 +17,7 @@ from coursework.figures import (
     rail,
     rotation_arrow,
     slider,
+    trace,
     vector,
 )
 from coursework.figures.polygons import (
@@ -30,6 +33,8 @@ from coursework.figures.polygons import (
 from coursework.figures.polygons.construction import Construction
 from coursework.kinematics.dyads import rrp, rrr
 from coursework.kinematics.vectors import cross, dot
+
+from ._machines import rows_of
 
 # The example of the lesson: mm, degrees, rad/s.
 R2, R3, E, THETA2, OMEGA2 = 60.0, 180.0, 20.0, 60.0, 10.0
@@ -209,3 +214,25 @@ def six_bar_accelerations():
         slider_a("P", "B", -rod, w5, a5, "r_5", a_P),
     )
     return Construction(polygon, "en").figure
+
+
+# ------------------------------------------------------------------ curves to be named
+
+
+def curves_to_be_named():
+    """Position, velocity and acceleration of a piston over a turn of the crank, without names, each to its own scale."""
+    turn = np.radians(np.arange(0.0, 361.0, 3.0))
+    ratio = R3 / R2
+    leaning = np.sqrt(ratio**2 - np.sin(turn) ** 2)
+    curves = [
+        -np.sin(turn) - np.sin(turn) * np.cos(turn) / leaning,
+        -np.cos(turn) - (np.cos(2 * turn) * leaning**2 + (np.sin(2 * turn) / 2) ** 2) / leaning**3,
+        np.cos(turn) + leaning - ratio,
+    ]
+    drawings = []
+    for curve in curves:
+        high = 40 * curve / np.abs(curve).max()
+        points = tuple(complex(x, y) for x, y in zip(np.degrees(turn) / 3.6, high, strict=True))
+        grid = [line(x - 40j, x + 40j, dashed=True) for x in (0, 25, 50, 75, 100)]
+        drawings.append([*grid, line(0, 100), trace(points, dotted=False)])
+    return Figure(*rows_of(drawings, 3, 100 + 80j), paper_mm=(165, 60))

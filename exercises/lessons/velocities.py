@@ -24,6 +24,8 @@ from coursework.figures import (
 )
 from coursework.kinematics.dyads import rrr
 
+from ._machines import rows_of
+
 R1, R2, R3, R4, THETA2 = 200.0, 60.0, 180.0, 140.0, 60.0  #: mm and degrees: the linkage of the lesson
 OMEGA2 = 10.0  #: rad/s
 KV = 5.0  #: mm/s for a mm of mechanism, where a velocity is drawn beside it
@@ -381,3 +383,28 @@ def cam():
         note(K + 25 - 10j, "2"),
         paper_mm=(90, 65),
     )
+
+
+# ------------------------------------------------------------------ polygons to be matched
+
+#: Angles of the crank in four positions, and the order in which their polygons stand.
+POSITIONS, ORDER = (40.0, 110.0, 215.0, 290.0), (2, 0, 3, 1)
+
+
+def polygons_to_be_matched():
+    """Four positions of one linkage, and their polygons in another order."""
+    linkages, polygons = [], []
+    for theta2 in POSITIONS:
+        A, C = complex(polar(R2, theta2)), complex(R1)
+        B = complex(rrr(A, C, R3, R4, 1))
+        linkages.append(
+            [link(0, A), link(A, B), link(C, B), ground_pivot(0), ground_pivot(C), pin(A, "A"), pin(B, "B")]
+        )
+        a, across = 1j * A, 1j * (B - C)
+        along = B - A
+        b = (
+            across * (a * along.conjugate()).real / (across * along.conjugate()).real
+        )  # equal projections on AB
+        polygons.append([vector(0, a, "V_A"), vector(0, b, "V_B"), line(a, b)])
+    drawings = [*linkages, *(polygons[k] for k in ORDER)]
+    return Figure(*rows_of(drawings, 4, 100 + 80j), paper_mm=(165, 95))
