@@ -239,6 +239,29 @@ def test_the_classes_of_the_schemes_without_a_name_are_those_of_their_groups(cou
         assert re.findall(r"^\| \([a-h]\) .* (I+) \|$", text, re.MULTILINE) == right, lang
 
 
+def test_the_answers_to_figures_to_identify_are_those_of_the_solver(course):
+    """Figures of other lessons that ask for a class or a type of linkage."""
+
+    def answer(lesson, figure, lang):
+        text = lesson_file(course.folder, lesson, lang).read_text("utf-8")
+        return text.partition(f"(figure:{figure}")[2].partition("```answer")[2].partition("```")[0]
+
+    schemes = [name for name, _ in course.folder.lesson_module("mobility_and_groups").UNNAMED]
+    classes = [roman(compiled(LINKAGES / "exercises" / f"{name}.toml").formulas.rank) for name in schemes]
+    linkages = course.folder.lesson_module("grashof_and_coupler_curves").UNNAMED
+    lengths = [dict(zip(("r1", "r2", "r3", "r4"), bars, strict=True)) for bars, _ in linkages]
+    kinds = [
+        course["four_bar_positions"].solve(**bars, theta2=at, only="linkage_type")["linkage_type"]
+        for bars, (_, at) in zip(lengths, linkages, strict=True)
+    ]
+    for lang in languages():
+        told = answer("mobility_and_groups", "schemes_to_be_counted", lang)
+        assert re.findall(r": classe? (I+)\.", told) == classes, lang
+    told = answer("grashof_and_coupler_curves", "types_to_be_named", "en").replace("double ", "double-")
+    named = re.findall(r"(?:double-|triple |crank-|rocker-)(?:rocker|crank)|change point", told)
+    assert [name.replace(" ", "-") for name in named] == kinds
+
+
 @pytest.mark.parametrize("lesson", LESSONS)
 def test_no_number_of_a_machine_is_typed_by_hand_and_all_machines_stand_in_every_language(course, lesson):
     stated = set(course.folder.lesson_module(lesson).values())
@@ -248,6 +271,8 @@ def test_no_number_of_a_machine_is_typed_by_hand_and_all_machines_stand_in_every
         lessons_own = text.partition("\n## Questions")[0]
         assert re.findall(r"\\num\{[^}]*\}", lessons_own) == [], lang
         assert (
-            len(re.findall(r"^!\[\(a\) .* \(b\) .*\]\(figure:\w+\?tall=\d+\)$", text, re.MULTILINE))
+            len(
+                re.findall(r"^!\[\(a\) (?!.*\(c\)).* \(b\) .*\]\(figure:\w+\?tall=\d+\)$", text, re.MULTILINE)
+            )
             == LESSONS[lesson]
         )
