@@ -27,6 +27,7 @@ TABLES = (
     PlatformTable(canvas_answers.columns_of, canvas_answers.read_answers),
     PlatformTable(wide_answers.columns_of, wide_answers.read_wide),
 )
+NO_ANSWERS = Message("the file contains no answers")
 FAULTS = (moodle_responses.is_another, canvas_answers.is_another)
 
 
@@ -60,7 +61,12 @@ def read_table(
     if not records or not table.is_this(records[0][1]):  # one read by lines, one by quotation marks
         yield Rejected(source, Message("the header is damaged: a quotation mark in it is never closed"))
         return
-    yield from table.read(records[0][1], iter(records[1:]), source, warning)
+    is_empty = True
+    for row in table.read(records[0][1], iter(records[1:]), source, warning):
+        is_empty = False
+        yield row
+    if is_empty:
+        yield Rejected(source, NO_ANSWERS)
 
 
 def read_records(

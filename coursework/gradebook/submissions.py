@@ -17,7 +17,7 @@ from typing import Any, BinaryIO
 
 from coursework.errors import BadInput, closest
 from coursework.gradebook.notebooks import read_notebook
-from coursework.gradebook.platform_files import fault_of, read_records, read_table, reader_of
+from coursework.gradebook.platform_files import NO_ANSWERS, fault_of, read_records, read_table, reader_of
 from coursework.gradebook.qti_results import read_results
 from coursework.gradebook.rows import (
     AnswerRow,
@@ -258,8 +258,6 @@ def _row_of(cells: Sequence[str], location: str, warning: str) -> AnswerRow:
 
 
 _kept = sys.intern
-
-NO_ANSWERS = Message("the file contains no answers")
 
 
 def _read_parquet(path: Path, opened: BinaryIO) -> Iterator[AnswerRow | Rejected]:
