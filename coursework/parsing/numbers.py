@@ -315,14 +315,14 @@ def _named_unit_unknown(text: str) -> Stop | None:
     return None
 
 
-def read_amounts(text: str, target: Unit, thousands: bool = True, proportions: bool = True) -> list[Amount]:
+def read_amounts(text: str, target: Unit, thousands: bool = True, measured: bool = True) -> list[Amount]:
     """All honest readings of one number, the likelier first."""
     text = without_name(text)
     text = (
         _PRINTED.sub(r"\1", text)
         if "(" in text
         else _without_margin(text)
-        if "±" in text or "+" in text
+        if measured and ("±" in text or "+" in text)
         else text
     )
     if _PAIR.fullmatch(text):
@@ -332,7 +332,7 @@ def read_amounts(text: str, target: Unit, thousands: bool = True, proportions: b
         raise Stop("not_a_number", text)
     if _NOT_FINITE.match(text):
         raise Stop("not_finite", text)
-    is_ratio = proportions and target.dimension == RATIO
+    is_ratio = measured and target.dimension == RATIO
     if is_ratio and (parts := _PROPORTION.fullmatch(text)):
         text = f"{parts[1]}/{parts[2]}"
     amounts = in_digits(text, target, thousands)
@@ -593,13 +593,13 @@ _LINES = re.compile(
 )  #: a number on each of two lines, none of them going on
 
 
-def read_number(text: Any, unit: str, *, thousands: bool = True, proportions: bool = True) -> Reading:
+def read_number(text: Any, unit: str, *, thousands: bool = True, measured: bool = True) -> Reading:
     """Return a number, with or without its unit, in the canonical ``unit``.
 
     Without a unit it is in ``unit``; where ``unit`` is ``deg`` and the formula speaks of radians (``π/3``),
     radians are tried first. An int or float is taken as it is. Unless ``thousands``, the comma of ``1,234`` is
     decimal and nothing else: a direction has no thousands of degrees, and modulo a turn any number may be near. Unless
-    ``proportions``, ``2:1`` and ``2/1`` are two numbers: a count is no ratio.
+    ``measured``, ``2:1`` and ``2/1`` are two numbers, and so are ``80 ± 2``: a count is no ratio and has no margin.
 
     Raises
     ------
@@ -615,10 +615,10 @@ def read_number(text: Any, unit: str, *, thousands: bool = True, proportions: bo
     text = bare_value(text)
     if isinstance(text, Real) and not isinstance(text, bool):
         return _from_real(text)
-    return (_read_text if text.__class__ is str else _read)(text, unit, thousands, proportions)
+    return (_read_text if text.__class__ is str else _read)(text, unit, thousands, measured)
 
 
-def _read(text: Any, unit: str, thousands: bool, proportions: bool) -> Reading:
+def _read(text: Any, unit: str, thousands: bool, measured: bool) -> Reading:
     if isinstance(text, str) and "\n" in text and _LINES.search(text.replace("\r", "")):
         return Reading(text, "unreadable", code="two_values", found=shorten(" ".join(text.split())))
 
@@ -626,7 +626,7 @@ def _read(text: Any, unit: str, thousands: bool, proportions: bool) -> Reading:
         plain, target = with_signs(plain), target_unit(unit)
         refuse_no_number(plain, target)
         texts = restated(plain, unit) if is_of_paper(unit) else (plain,)
-        amounts = [a for piece in texts for a in read_amounts(piece, target, thousands, proportions)]
+        amounts = [a for piece in texts for a in read_amounts(piece, target, thousands, measured)]
         return _from_amounts(text, amounts)
 
     return reading_of(text, read)
@@ -663,7 +663,7 @@ def read_integer(text: Any) -> Reading:
     """Return a whole number, without unit: ``3``, ``3,0``, ``γ = 3``, ``1 ddl``; the values are ints."""
     text = bare_value(text)
     counted = _COUNTED.sub("", text) if isinstance(text, str) and len(text) < MAX_LENGTH else text
-    reading = read_number(counted, "1", proportions=False)
+    reading = read_number(counted, "1", measured=False)
     if counted is not text:
         reading = replace(reading, text=text)
     if reading.status != "read":

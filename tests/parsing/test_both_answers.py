@@ -56,7 +56,7 @@ def test_a_right_and_a_wrong_answer_in_one_box_are_not_right(exercise_of, name, 
 @each_row(
     "text",
     ["1 [2]", "(2) (1)", "(2)(1)", "2:1", "2 : 1", "2* 1", "2*1", "2, 1", "2 1", "2/1", "2 + 0", "2 - 0*7", "2^1", "1 × 2", "2;1",
-     "m_u = 0 (not m_u = 1)", "not 1 : 2", "two = 1", "un : 2", "x or 1 = 2", "2 (1) ddl", "((2) 1)", "~~1~~ 2"],
+     "m_u = 0 (not m_u = 1)", "not 1 : 2", "two = 1", "un : 2", "80 ± 2", "x or 1 = 2", "2 (1) ddl", "((2) 1)", "~~1~~ 2"],
 )  # fmt: skip
 def test_a_count_is_one_number(text):
     reading = read_integer(text)
