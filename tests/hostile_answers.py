@@ -64,6 +64,14 @@ def _numbers(value: float, unit: str, rng: random.Random, turns: bool) -> Iterat
     yield f"{value:.8e}".replace("e", "\u00b710^")
     yield f"{value:.8e}".replace("e", " x 10^{") + "}"
     yield f"{digits} ({significant(value, 8)})"
+    if behind:
+        yield f"{digits} {behind}"
+        yield f"{digits}{behind}"
+        yield f"{comma}\u202f{behind}"
+        yield rf"{digits}\,\mathrm{{{behind}}}"
+        yield f"{digits} [{behind}]"
+    if not value:
+        return  # nobody works out 0, and 0 = 0 holds whatever is asked
     yield f"{significant(value, 9)} = {digits}"
     yield f"x = {significant(value, 9)} \u2248 {digits} {behind}".strip()
     yield f"{digits} {behind} ({significant(value, 9)} {behind})"
@@ -72,12 +80,6 @@ def _numbers(value: float, unit: str, rng: random.Random, turns: bool) -> Iterat
     yield f"{significant(value * 3, 9)}/3"
     yield f"7*{significant(value / 7, 9)}"
     yield f"2({significant(value / 2 - 3, 9)} + 3)"
-    if behind:
-        yield f"{digits} {behind}"
-        yield f"{digits}{behind}"
-        yield f"{comma}\u202f{behind}"
-        yield rf"{digits}\,\mathrm{{{behind}}}"
-        yield f"{digits} [{behind}]"
     if unit == "deg":
         yield from _angles(value, digits, turns)
 
