@@ -46,7 +46,7 @@ _SOLUTION_IMPORTS = """from coursework.figures.polygons import (
     Side, normal, polygon_of_accelerations, polygon_of_velocities, tangential, turning,
 )
 from coursework.mechanics import Body, Gear, Load, Mechanism, Slide
-from coursework.marking.drawn_polygons import DrawingParts, met, off_both, scale_for, to_paper, turned, verdicts
+from coursework.marking.drawn_polygons import DrawingParts, if_long, met, off_both, scale_for, to_paper, turned, verdicts
 from coursework.solution import Moving, given, judge, mistake, stable, told_after
 """
 
@@ -177,8 +177,10 @@ class CompiledLinkage:
             if code:
                 results.append(_condition("no_dead_point_is_near", code))
         for polygon in self.questions.polygons if varies else ():
-            lengths = ", ".join(polygon.lengths)
-            code = f"np.minimum.reduce([{lengths}]) > 0.12 * np.maximum.reduce([{lengths}])"
+            lines, lengths = ", ".join(polygon.lines), ", ".join(polygon.lengths)
+            code = f"np.maximum.reduce([{lengths}]) > 45 * {polygon.scale}"
+            results.append(_condition(f"{polygon.kind}_polygon_is_large_enough_to_judge", code))
+            code = f"np.minimum.reduce([{lines}]) > {polygon.least} * np.maximum.reduce([{lengths}])"
             results.append(_condition(f"{polygon.kind}_vectors_are_long_enough_to_draw", code))
         asked = [q.name for q in self.questions.questions]
         rates = [n for n in asked if n.startswith(("omega", "alpha")) and n in formulas.quantities]

@@ -27,7 +27,7 @@ Chain: TypeAlias = list[tuple[str, str, str, str]]  #: vectors as code: length, 
 _WORDS = (
     "sin cos tan sqrt abs atan2 acos asin polar angle wrap np dyads dict max complex Figure line link ground_pivot pin point slot_link "
     "slider rail circle angle_mark Side normal tangential turning polygon_of_velocities polygon_of_accelerations FourBar SliderCrank "
-    "Degrees from_radians scale_for to_paper turned met off_both verdicts DrawingParts Moving"
+    "Degrees from_radians scale_for to_paper if_long turned met off_both verdicts DrawingParts Moving"
 )
 FUNCTIONS = frozenset(_WORDS.split())  #: names in code that are no quantities
 _OTHERS = ("pi", "min", "hypot", "result")  #: names that code or an expression uses besides

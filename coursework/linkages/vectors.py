@@ -7,9 +7,9 @@ from dataclasses import dataclass
 
 from coursework.linkages.entries import GROUND, SlideEntry
 from coursework.linkages.formulas import FormulaWriter
-from coursework.linkages.groups import Dyad
+from coursework.linkages.groups import Dyad, Wheel
 from coursework.linkages.points import Quantity, UsualMistake, names_in
-from coursework.linkages.terms import Heading
+from coursework.linkages.terms import Heading, is_zero
 
 PAPER_MM = (160, 90)  #: the box of millimetre paper to draw in
 _FUNCTIONS = {"velocity": "polygon_of_velocities", "acceleration": "polygon_of_accelerations"}
@@ -43,7 +43,7 @@ class PolygonWriter:
     Raises
     ------
     BadInput
-        A group of which no polygon is drawn: a slide on a body that moves, or a group of class III and above.
+        A group of which no polygon is drawn: one of class III and above.
     """
 
     def __init__(self, formulas: FormulaWriter, kind: str) -> None:
@@ -51,6 +51,8 @@ class PolygonWriter:
         self.letter = kind[0]  #: before the names of its parts
         self.scale = f"k{kind[0]}"
         self.pole = _POLES[kind]
+        self._turned: set[str] = set()  #: ends of the Coriolis accelerations
+        self._alias: dict[str, str] = {}  #: images of points that move as another does
         self.pieces = [piece for piece in self._pieces() if piece]
         self.sides = [side for piece in self.pieces for side in piece]
 
@@ -63,30 +65,59 @@ class PolygonWriter:
 
     def _pieces(self) -> Iterator[list[DrawnSide]]:
         drawn: set[str] = set()
-        if self.linkage.drive.kind != "turn":
-            raise self.linkage.refused(
-                ("ask", "polygon"), "polygons are drawn of mechanisms that a given angle drives"
-            )
-        yield from self._carried(self.linkage.driver, drawn)
+        yield from self._driven(drawn)
         for group in self.formulas.groups:
             match group:
-                case Dyad(kind="RPR", inner=SlideEntry(at=inner) as slide) if inner == group.outer_p:
+                case Dyad(kind="RPR", outer_p=str(found), inner=SlideEntry() as slide):
                     yield self._guided(group, slide)
-                case Dyad(kind="RRR" | "RRP", inner=str(inner), outer_q=SlideEntry() as slide):
-                    yield self._slider(group, slide)
-                case Dyad(kind="RRR" | "RRP", inner=str(inner)):
-                    yield self._bars(group, str(group.outer_p), inner, str(group.outer_q))
+                case Dyad(kind="RRR", inner=str(found)):
+                    yield self._met(*self._ends(group, found))
+                case Dyad(kind="RRP", inner=str(found), outer_q=SlideEntry() as slide):
+                    known, relative = self._sliding(slide, group.q, found)
+                    yield known
+                    yield self._met(self._about(group.p, str(group.outer_p), found, "'"), relative)
+                case Dyad(
+                    kind="PRP", inner=str(found), outer_p=SlideEntry() as one, outer_q=SlideEntry() as other
+                ):
+                    ends = [self._sliding(s, b, found) for s, b in ((one, group.p), (other, group.q))]
+                    yield from (known for known, _ in ends)
+                    yield self._met(*(relative for _, relative in ends))
+                case Dyad(
+                    kind="RPP", outer_p=str(found), inner=SlideEntry() as inner, outer_q=SlideEntry() as outer
+                ):
+                    yield from self._crossed(group, inner, outer)
+                case Wheel(at=found):
+                    pass
                 case _:
                     raise self.linkage.refused(
                         ("ask", "polygon"),
-                        "polygons are drawn of pairs of bars, of sliders on fixed guides, and of guides about a joint",
+                        "polygons are drawn body after body; {bodies} are one group of class III or above, which moves as a whole",
+                        bodies=", ".join(group.bodies),
                     )
-            drawn.add(inner)
+            drawn.add(found)
             for body in group.bodies:
                 yield from self._carried(body, drawn)
 
+    def _driven(self, drawn: set[str]) -> Iterator[list[DrawnSide]]:
+        """Yield the sides of what drives: a crank, or a slider; a jack is a bar of its group."""
+        linkage = self.linkage
+        if linkage.drive.kind == "slide":
+            slide = linkage.slides[linkage.slides_driven]
+            rate = linkage.drive.rates[0] if self.kind == "velocity" else linkage.acceleration
+            drawn.add(slide.at)
+            if rate:
+                _, (line,) = self._sliding(slide, linkage.driver, slide.at)
+                size = rf"\left|{self.formulas.symbol(rate)}\right|"
+                yield self._in_turn(
+                    self.pole, [(line.end, line.name, line.value, rf"\parallel {slide.at}x", size)]
+                )[0]
+            else:
+                self._alias[slide.at] = self.pole
+        if linkage.drive.kind != "jack":
+            yield from self._carried(linkage.driver, drawn)
+
     def _carried(self, body: str, drawn: set[str]) -> Iterator[list[DrawnSide]]:
-        """Yield the sides of the joints that a body carries beside those that are drawn."""
+        """Yield the sides of the joints that a body carries beside those that are drawn; a body that does not turn adds none."""
         start = self.formulas.reference[body]
         for point in self.linkage.bodies[body].points:
             if (
@@ -97,31 +128,33 @@ class PolygonWriter:
             ):
                 continue
             drawn.add(point)
-            yield self._about(body, start, point, "")
+            if self.formulas.omega(body) == "0":
+                self._alias[point] = self._image(start)
+            else:
+                yield self._about(body, start, point, "")
 
     def _about(
-        self, body: str, start: str, end: str, primes: str, image: str = "", of: str = ""
+        self, body: str, start: str, end: str, primes: str, image: str = "", of: str = "", begin: str = ""
     ) -> list[DrawnSide]:
         """Return the sides from the image of a point of a body to that of another; without ``primes`` they are known, since the motion
         of the body is. ``image`` and ``of`` are those of the end, unless a point of the body that lies there has its own."""
         vector, line, of = self._vector(start, end), start + end, of or self._of(start, end)
-        begin, image = self._image(start), image or end.lower()
+        begin, image = begin or self._image(start), image or end.lower()
         omega, alpha = self.formulas.omega(body), self.formulas.alpha(body)
+        if alpha in self.formulas.quantities and is_zero(self.formulas.quantities[alpha].code):
+            alpha = "0"  # of a wheel on a crank at constant speed
         rate, gain = self.formulas.symbol(omega), self.formulas.symbol(alpha) if alpha != "0" else ""
+        grown = self._grown(body, start, end, line, of)
         if self.kind == "velocity":
             length = "" if primes else rf', r"{line} \left|{rate}\right|"'
+            sides, begin = self._in_turn(begin, grown)
             call = f"turning({begin!r}, {image!r}, {of!r}, {line!r}, {vector}, {omega}{length})"
-            return [
-                DrawnSide(
-                    begin,
-                    image,
-                    rf"\vec{{V}}_{{{of}}}",
-                    not primes,
-                    f"1j * {omega} * ({vector})",
-                    f"1j * ({vector})",
-                    call,
-                )
-            ]
+            name, across = (
+                rf"\vec{{V}}_{{{of}}}" if not grown else rf"\vec{{V}}^t_{{{of}}}",
+                f"1j * ({vector})",
+            )
+            value = f"1j * {omega} * ({vector})"
+            return [*sides, DrawnSide(begin, image, name, not primes, value, across, call)]
         square = rf"{line}\,{rate}^2"
         middle = image if not primes and not gain else image + (primes or "'")
         call = f'normal({begin!r}, "{middle}", {of!r}, {line!r}, {vector}, {omega}, r"{square}")'
@@ -129,68 +162,146 @@ class PolygonWriter:
             DrawnSide(begin, middle, rf"\vec{{a}}^n_{{{of}}}", True, f"-({omega}**2) * ({vector})", "", call)
         ]
         if primes or gain:
+            more, middle = self._in_turn(middle, grown)
             length = "" if primes else rf', r"{line} \left|{gain}\right|"'
             call = f'tangential("{middle}", {image!r}, {of!r}, {line!r}, {vector}, {alpha}{length})'
-            sides.append(
-                DrawnSide(
-                    middle,
-                    image,
-                    rf"\vec{{a}}^t_{{{of}}}",
-                    not primes,
-                    f"1j * {alpha} * ({vector})",
-                    f"1j * ({vector})",
-                    call,
-                )
-            )
+            name, across = rf"\vec{{a}}^t_{{{of}}}", f"1j * ({vector})"
+            value = f"1j * {alpha} * ({vector})"
+            sides += [*more, DrawnSide(middle, image, name, not primes, value, across, call)]
         return sides
 
-    def _bars(self, group: Dyad, start: str, inner: str, end: str) -> list[DrawnSide]:
-        first = self._about(group.p, start, inner, "'")
-        second = self._about(group.q, end, inner, "''")
+    def _grown(
+        self, body: str, start: str, end: str, line: str, of: str
+    ) -> list[tuple[str, str, str, str, str]]:
+        """Return what a driving jack adds as it grows: of each vector the image of its end, its name, its value, its direction and its
+        size; nothing for any other body."""
+        linkage, formulas = self.linkage, self.formulas
+        if body != linkage.jack:
+            return []
+        arm, (speed, _) = formulas.arm(body, start, end), linkage.drive.rates
+        way = f"{'' if arm.sign > 0 else '-'}polar(1, {arm.heading.code})"
+        sizes = {
+            n: formulas.symbol(n) for n in (speed, linkage.acceleration or "", formulas.omega(body)) if n
+        }
         if self.kind == "velocity":
-            return [*first, *second]
-        return [first[0], second[0], first[1], second[1]]
+            return [
+                (
+                    f"l_{body}",
+                    rf"\vec{{V}}^r_{{{of}}}",
+                    f"{speed} * {way}",
+                    rf"\parallel {line}",
+                    rf"\left|{sizes[speed]}\right|",
+                )
+            ]
+        omega = formulas.omega(body)
+        size = rf"2 \left|{sizes[omega]}\,{sizes[speed]}\right|"
+        results = [
+            (f"k_{body}", rf"\vec{{a}}^c_{{{of}}}", f"2j * {omega} * {speed} * {way}", rf"\perp {line}", size)
+        ]
+        if gain := linkage.acceleration:
+            name, size = rf"\vec{{a}}^r_{{{of}}}", rf"\left|{sizes[gain]}\right|"
+            results.append((f"l_{body}", name, f"{gain} * {way}", rf"\parallel {line}", size))
+        return results
+
+    def _in_turn(
+        self, start: str, vectors: Sequence[tuple[str, str, str, str, str]]
+    ) -> tuple[list[DrawnSide], str]:
+        """Return known vectors as sides one after the other, and the image at which the last ends."""
+        sides = []
+        for image, name, value, way, size in vectors:
+            call = f'Side({start!r}, {image!r}, r"{name}", {value}, r"{way}", r"{size}")'
+            sides.append(DrawnSide(start, image, name, True, value, "", call))
+            start = image
+        return sides, start
+
+    def _ends(self, group: Dyad, inner: str) -> Iterator[list[DrawnSide]]:
+        yield self._about(group.p, str(group.outer_p), inner, "'")
+        yield self._about(group.q, str(group.outer_q), inner, "''")
+
+    @staticmethod
+    def _met(first: list[DrawnSide], other: list[DrawnSide]) -> list[DrawnSide]:
+        """Return the sides of two ways to an image: what is known of both, then the two lines that cross there."""
+        return [*first[:-1], *other[:-1], first[-1], other[-1]]
+
+    def _sliding(
+        self, slide: SlideEntry, body: str, point: str, image: str = "", under: str = ""
+    ) -> tuple[list[DrawnSide], list[DrawnSide]]:
+        """Return the sides that lead to the image of a point of a body that slides on a placed one: those of the point of the guide
+        under it, all known, and those of the motion on the guide, the last of them a line."""
+        formulas, slides = self.formulas, body == slide.of
+        guide = slide.on if slides else slide.of
+        known: list[DrawnSide] = []
+        start, of, line = self.pole, under or point, f"{point}x"
+        if guide != GROUND:
+            reference, coincident = formulas.reference[guide], f"{point}_{{{guide}}}"
+            start, of, line = self._image(reference), f"{of}/{coincident}", f"{point}x_{{{guide}}}"
+            if formulas.omega(guide) != "0":
+                known = self._about(guide, reference, point, "", f"{point.lower()}_{guide}", coincident)
+                start = known[-1].end
+        way = f"polar(1, {(formulas.heading(guide) + Heading.of(slide.along.code)).code})"
+        relative = self._relative(
+            slide, guide, (start, image or point.lower()), of, ("" if slides else "-") + way, line
+        )
+        return known, relative
+
+    def _relative(
+        self,
+        slide: SlideEntry,
+        guide: str,
+        ends: tuple[str, str],
+        of: str,
+        way: str,
+        line: str,
+        back: str = "",
+    ) -> list[DrawnSide]:
+        """Return the sides of a motion along a guide, ``back`` where it is laid off from the block to the guide: the Coriolis
+        acceleration where the guide turns, and a line."""
+        (speed, gain), (start, image), symbol = slide.rates, ends, self.formulas.symbol
+        sign, way = ("-", way[1:]) if way.startswith("-") else ("", way)
+        omega = self.formulas.omega(guide) if guide != GROUND else "0"
+        sides: list[DrawnSide] = []
+        letter, rate = ("V", speed) if self.kind == "velocity" else ("a", gain)
+        if self.kind == "acceleration" and omega != "0":
+            end, size = f"k_{guide}", rf"2 \left|{symbol(omega)}\,{symbol(speed)}\right|"
+            if end in self._turned:
+                end = f"k_{slide.at.lower()}{guide}"
+            self._turned.add(end)
+            name, turn = rf"{back}\vec{{a}}^c_{{{of}}}", f"{sign}2j * {omega} * {speed} * {way}"
+            sides, start = self._in_turn(start, [(end, name, turn, rf"\perp {line}", size)])
+        kind = "^r" if letter == "a" and (back or omega != "0") else ""
+        name, value = rf"{back}\vec{{{letter}}}{kind}_{{{of}}}", f"{sign}{rate} * {way}"
+        call = rf'Side({start!r}, {image!r}, r"{name}", {value}, r"\parallel {line}", way={way})'
+        return [*sides, DrawnSide(start, image, name, False, value, way, call)]
 
     def _guided(self, group: Dyad, slide: SlideEntry) -> list[DrawnSide]:
         """Return the sides of a guide that turns about a joint: to the image of its point under the block, from the joint and from the
         block."""
-        P, Q, guide = slide.at, str(group.outer_q), group.q
+        P, guide = str(group.outer_p), group.q
         under, image = f"{P}_{{{guide}}}", f"{P.lower()}_{guide}"
-        first = self._about(guide, Q, P, "'", image, under)
-        heading = self.formulas.heading(guide) + Heading.of(slide.along.code)
-        way, speed = f"polar(1, {heading.code})", slide.rates[0]
-        letter, rate = ("V", speed) if self.kind == "velocity" else ("a", slide.rates[1])
-        parallel = rf"\parallel {P}x_{{{guide}}}"
-        kind = "" if self.kind == "velocity" else "^r"
-        name, value, start = rf"-\vec{{{letter}}}{kind}_{{{P}/{under}}}", f"-{rate} * {way}", self._image(P)
-        extra = []
-        if self.kind == "acceleration":
-            omega = self.formulas.omega(guide)
-            coriolis, turn = rf"-\vec{{a}}^c_{{{P}/{under}}}", f"-2j * {omega} * {speed} * {way}"
-            size = rf"2 \left|{self.formulas.symbol(omega)}\,{self.formulas.symbol(speed)}\right|"
-            across = rf"\perp {P}x_{{{guide}}}"
-            call = f'Side({start!r}, "k_{guide}", r"{coriolis}", {turn}, r"{across}", r"{size}")'
-            extra = [DrawnSide(start, f"k_{guide}", coriolis, True, turn, "", call)]
-            start = f"k_{guide}"
-        call = f'Side({start!r}, {image!r}, r"{name}", {value}, r"{parallel}", way={way})'
-        last = DrawnSide(start, image, name, False, value, way, call)
-        return [*first[:-1], *extra, first[-1], last]
+        first = self._about(guide, str(group.outer_q), P, "'", image, under)
+        way = f"-polar(1, {(self.formulas.heading(guide) + Heading.of(slide.along.code)).code})"
+        ends = self._image(P), image
+        return self._met(
+            first, self._relative(slide, guide, ends, f"{P}/{under}", way, f"{P}x_{{{guide}}}", "-")
+        )
 
-    def _slider(self, group: Dyad, slide: SlideEntry) -> list[DrawnSide]:
-        if slide.on != GROUND:
-            raise self.linkage.refused(
-                ("ask", "polygon"), "polygons are drawn of sliders on fixed guides; this guide moves"
-            )
-        B = str(group.inner)
-        way = f"polar(1, {Heading.of(slide.along.code).code})"
-        letter, rate = ("V", slide.rates[0]) if self.kind == "velocity" else ("a", slide.rates[1])
-        value = f"{rate} * {way}"
-        name = rf"\vec{{{letter}}}_{{{B}}}"
-        call = rf'Side("{self.pole}", {B.lower()!r}, r"{name}", {value}, r"\parallel {B}x", way={way})'
-        return [
-            *self._about(group.p, str(group.outer_p), B, "'"),
-            DrawnSide(self.pole, B.lower(), name, False, value, way, call),
-        ]
+    def _crossed(self, group: Dyad, inner: SlideEntry, outer: SlideEntry) -> Iterator[list[DrawnSide]]:
+        """Yield the sides of a body that slides on a placed one and carries a block: to the image of its point under the block."""
+        P, yoke = str(group.outer_p), group.q
+        under, image = f"{P}_{{{yoke}}}", f"{P.lower()}_{yoke}"
+        known, along = self._sliding(outer, yoke, P, image, under)
+        yield known
+        heading = self.formulas.heading(yoke) + Heading.of(inner.along.code)
+        way = f"{'-' if inner.of == group.p else ''}polar(1, {heading.code})"
+        ends = self._image(P), image
+        yield self._met(
+            along, self._relative(inner, yoke, ends, f"{P}/{under}", way, f"{P}x_{{{yoke}}}", "-")
+        )
+        start = self.formulas.reference[yoke]
+        if self.formulas.omega(yoke) == "0":
+            self._alias[start] = image
+        else:
+            yield self._about(yoke, P, start, "", begin=image)
 
     def _vector(self, start: str, end: str) -> str:
         first, last = self.formulas.at(start), self.formulas.at(end)
@@ -198,7 +309,7 @@ class PolygonWriter:
         return f"{away.x.code} + 1j * {away.y.factor}" if not away.y.vanishes else f"{away.x.code} + 0j"
 
     def _image(self, point: str) -> str:
-        return self.pole if point in self.linkage.ground else point.lower()
+        return self.pole if point in self.linkage.ground else self._alias.get(point, point.lower())
 
     def _of(self, start: str, end: str) -> str:
         return end if start in self.linkage.ground else f"{end}/{start}"
@@ -278,7 +389,12 @@ class PolygonWriter:
                         ("vector", f"{start} + 0.6 * (turned({start}, {own}, 75) - {start})"),
                     ):
                         yield UsualMistake(
-                            f"{key}_{kind}", (own,), (code,), f"drawn_{kind}", words, _kind(kind)
+                            f"{key}_{kind}",
+                            (own,),
+                            (f"if_long({start}, {own}, {code})",),
+                            f"drawn_{kind}",
+                            words,
+                            _kind(kind),
                         )
             if not sides[0].is_known:
                 yield from self._of_crossing(own, image, sides)
@@ -290,12 +406,18 @@ class PolygonWriter:
             ways = [f"({s.way})" + (" * np.exp(-0.35j)" if k == line else "") for k, s in enumerate(sides)]
             words = {"vector": side.name, "start": side.start, "image": image}
             key = self.side_key(side)
-            code = f"met({starts[0]}, {ways[0]}, {starts[1]}, {ways[1]})"
+            long = f"if_long({starts[line]}, {own}, "
+            code = f"{long}met({starts[0]}, {ways[0]}, {starts[1]}, {ways[1]}))"
             yield UsualMistake(f"{key}_direction", (own,), (code,), "drawn_line_direction", words)
             yield UsualMistake(
-                f"{key}_sense", (own,), (f"2 * {starts[line]} - {own}",), "drawn_line_sense", words, "sign"
+                f"{key}_sense",
+                (own,),
+                (f"{long}2 * {starts[line]} - {own})",),
+                "drawn_line_sense",
+                words,
+                "sign",
             )
-        code = f"off_both({own}, ({first.way}, {other.way}), {starts[0]})"
+        code = f"if_long({starts[0]}, {own}, off_both({own}, ({first.way}, {other.way}), {starts[0]}))"
         words = {"vector": first.name, "other": other.name, "image": image}
         yield UsualMistake(f"{own}_vector", (own,), (code,), "drawn_off_both", words)
 
@@ -303,6 +425,20 @@ class PolygonWriter:
     def parts(self) -> Mapping[str, str]:
         """Image points by the id of the part that asks each, the pole first."""
         return {self.part(image): image for image in (self.pole, *self.images)}
+
+    @property
+    def lines(self) -> tuple[str, ...]:
+        """Lengths of the vectors that must be long enough to draw, as code: all velocities; of accelerations those that are found on
+        lines, since a normal acceleration may be next to nothing in all positions."""
+        return (
+            tuple(f"abs({s.value})" for s in self.sides if self.kind == "velocity" or not s.is_known)
+            or self.lengths
+        )
+
+    @property
+    def least(self) -> float:
+        """Share of the longest vector that those must have."""
+        return 0.12 if self.kind == "velocity" else 0.06
 
     @property
     def lengths(self) -> tuple[str, ...]:

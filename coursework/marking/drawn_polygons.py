@@ -23,6 +23,7 @@ Answers: TypeAlias = Mapping[str, Any]  #: by part id, those that were read
 _BOX_MM = (130.0, 80.0)  #: in which the reference drawing fits
 
 
+_LEAST_SIDE_MM = 6.0  #: of a vector whose mistakes are told apart: a point is right within a millimetre
 _NOTHING_MM = 1e-9 * max(_BOX_MM)  #: what rounding leaves of a coordinate that is zero
 
 
@@ -35,6 +36,12 @@ def _coordinates(on_paper: np.ndarray) -> np.ndarray:
     """Of complex points on paper, along a last axis."""
     coordinates = np.stack([on_paper.real, on_paper.imag], axis=-1)
     return np.where(abs(coordinates) < _NOTHING_MM, 0.0, coordinates)
+
+
+def if_long(start: Any, end: Any, wrong: Any) -> np.ndarray:
+    """Return the wrong place of a vector's end on paper, NaN where the vector is so short that nobody tells how it is wrong."""
+    length = np.linalg.norm(np.asarray(end) - start, axis=-1, keepdims=True)
+    return np.where(length >= _LEAST_SIDE_MM, wrong, np.nan)
 
 
 def scale_for(*images: Any) -> Any:

@@ -4,7 +4,11 @@ import numpy as np
 import pytest
 from linkage_samples import course
 
+from coursework.api import open_course
 from coursework.authoring.checks import check_all
+from coursework.authoring.linkage_files import LINKAGES
+from coursework.figures.polygons import Side, polygon_of_velocities
+from coursework.figures.polygons.hand_drawn import judge_drawing
 from coursework.marking.marking import mark
 
 POLE = np.array([31.0, -12.0])
@@ -35,6 +39,51 @@ def test_a_right_drawing_gets_full_marks_from_any_pole_and_scale(name, count):
     assert {n: marks[n].points / marks[n].out_of for n in drawn} == dict.fromkeys(drawn, 1.0)
 
 
+#: Mechanisms by what drives or guides in them: a jack, a slider, a yoke, two crossed guides, wheels, a guide that moves.
+DRAWN = ("tipper", "piston_engine", "scotch_yoke", "crossed_slides", "geared_five_bar", "whitworth_on_a_rod")
+ON_A_ROD = """
+5 = { at = "Q", points = { D = "120 mm" } }
+6 = { points = { D = "0 mm" } }
+[slides]
+D = { of = "6", on = "3", through = "A", along = "20 deg", distance = "s" }
+"""
+
+
+def _stated(name):
+    """Return a mechanism's file that asks for both polygons; the last one is a four-bar whose rod guides a slider."""
+    if name != DRAWN[-1]:
+        text = (LINKAGES / "exercises" / f"{name}.toml").read_text("utf-8")
+    else:
+        text = (LINKAGES / "exercises" / "toggle.toml").read_text("utf-8")
+        text = text.replace("[ground]", '[ground]\nQ = ["90 mm", "220 mm"]').replace(
+            "\n[assembly]", ON_A_ROD + "[assembly]"
+        )
+        text = "\n".join(line for line in text.splitlines() if not line.startswith("polygon"))
+    return text.replace("[ask]", '[ask]\npolygon = ["velocity", "acceleration"]')
+
+
+def test_polygons_close_on_the_motion_whatever_drives_or_guides(tmp_path):
+    """Both ways to an image point end there, and the image of a joint is its velocity or acceleration."""
+    (tmp_path / "exercises").mkdir()
+    for name in DRAWN:
+        (tmp_path / "exercises" / f"{name}.toml").write_text(_stated(name), "utf-8")
+    course = open_course(tmp_path)
+    wrong = []
+    for name in DRAWN:
+        variant = course[name].variant(3)
+        for drawn in variant.polygons():
+            polygon, points = drawn.polygon, drawn.polygon.points
+            gaps = {side.name: points[side.end] - points[side.start] - side.value for side in polygon.sides}
+            for image, place in points.items():
+                names = tuple(f"{polygon.kind[0]}_{image.upper()}_{axis}" for axis in "xy")
+                if set(names) <= set(variant.exercise.solution.graph.names):
+                    gaps[image] = place - complex(
+                        *variant.exercise.solve(**variant.given, only=names).values()
+                    )
+            wrong += [(name, n, gap) for n, gap in gaps.items() if abs(gap) > 1e-12 * polygon.size]
+    assert not wrong
+
+
 def test_a_guide_drawn_without_coriolis_costs_the_point_it_leads_to():
     variant = course()["slotted_lever"].variant(2)
     answers = _drawing(variant)
@@ -52,6 +101,18 @@ def test_a_vector_laid_off_backwards_is_named_and_costs_its_end_alone(point, mis
     marks = _marks(variant, answers)
     assert marks[point].verdict == f"mistake:{mistake}"
     assert [n for n, m in marks.items() if n in answers and m.points < m.out_of] == [point]
+
+
+def test_a_scale_that_is_not_drawn_is_named_beside_short_vectors():
+    """A vector of three millimetres fits any scale, and does not speak for the stated one."""
+    sides = (
+        Side("p_v", "a", "V_A", 40 + 0j, r"\parallel x", "40"),
+        Side("a", "b", "V_B", 30j, r"\parallel y", "30"),
+        Side("b", "c", "V_C", 3 + 0j, r"\parallel x", "3"),
+    )
+    polygon = polygon_of_velocities(sides)
+    judged = judge_drawing(polygon, polygon.points, 2.0)
+    assert (judged.fits_stated_scale, judged.faults) == (False, {})
 
 
 @pytest.mark.slow

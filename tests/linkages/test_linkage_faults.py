@@ -101,7 +101,7 @@ LENGTHS = [
     ("tipper", "[assembly]", '5 = { from = "O", to = "G", rod = "6", length = "a" }\n[assembly]', 17, "two bodies are driven, 2 and 5"),
     ("tipper", "thrust = {", "torque = {", 27, "of a driven length ask thrust") ,
     ("tipper", "L_dot = {", "L_speed = {", 23, 'L_dot = "12 mm/s"'),
-    ("tipper", "instant_centres =", 'polygon = ["velocity"]\ninstant_centres =', 26, "a given angle drives"),
+    ("digger_arm", "thrust =", 'polygon = ["velocity"]\nthrust =', 23, "one group of class III"),
     ("piston_engine", "mobility = true", "advantage = true", 21, "asked where a given angle turns a body"),
     ("piston_engine", 'on = "ground", through = ["0 mm", "e"]', 'on = "2", through = ["0 mm", "e"]', 17, "distance along the slide, which follows"),
     ("klann_leg", 'EF = "57.7 mm"', 'EF = "1 mm"', 17, "EG, EF, FG has no value"),

@@ -415,7 +415,10 @@ def _scale(
     ranges = list(_ranges(polygon, points, width))
     best, count = _most_covered(ranges)
     if stated is not None:
-        agrees = any(0 < low <= 1 / stated <= high for low, high in ranges)
+        telling = [
+            (low, high) for low, high in ranges if high < 2 * low
+        ] or ranges  # a short one fits many scales
+        agrees = any(0 < low <= 1 / stated <= high for low, high in telling)
         is_other = count > 1 and abs(best * stated - 1) > _SAME_SCALE
         return (1 / best, False) if is_other and not agrees else (stated, True)
     if count:
