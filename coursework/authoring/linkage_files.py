@@ -20,6 +20,7 @@ from coursework.linkages.points import value_of
 from coursework.messages import Message
 from coursework.structure.assour import roman
 from coursework.structure.grashof import linkage_type
+from coursework.system.toml_files import source_of
 from coursework.system.writing import write_whole
 
 LINKAGES = Path(__file__).parent / "linkages"  #: a course of mechanisms to start from
@@ -101,12 +102,7 @@ def mechanism_alone(
         exercises.mkdir()
         name = path.stem if path.stem.isidentifier() else "mechanism"
         copy = exercises / f"{name}.toml"
-        try:
-            text = path.read_text("utf-8-sig")
-        except OSError as fault:
-            raise BadInput(
-                "{file} cannot be read: {problem}", file=path, problem=fault.strerror or fault
-            ) from fault
+        text = source_of(path)
         asks = any(line.strip().startswith("[ask]") for line in text.splitlines())
         copy.write_text(text if asks else f"{text}\n[ask]\nclass = true\n", "utf-8")
         made = compiled(copy, str(path))

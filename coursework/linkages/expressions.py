@@ -92,6 +92,19 @@ def _value(code: str) -> str:
         raise WrongValue(Message("{text} has no value", text=code)) from None
 
 
+def _refuse_comma(text: object) -> None:
+    """Refuse a decimal comma, which TOML and expressions do not have; between brackets a comma parts two values."""
+    if re.search(r"\d,\d", str(text)) and "(" not in str(text):
+        right = re.sub(r"(\d),(\d)", r"\1.\2", str(text))
+        raise WrongValue(
+            Message(
+                "a number has a decimal point, not a comma: {right}; found {text}",
+                right=repr(right),
+                text=repr(text),
+            )
+        )
+
+
 def amount(text: object, unit: str) -> float:
     """Return a number that stands with its unit.
 
@@ -115,6 +128,7 @@ def amount(text: object, unit: str) -> float:
         if unit == "1":
             return float(_written(text))
         raise WrongValue(Message('a unit is missing: "{text:g} {unit}"', text=text, unit=unit))
+    _refuse_comma(text)
     match = re.fullmatch(r"\s*([+-]?\d+(?:\.\d+)?(?:[eE][+-]?\d+)?)\s*(.*?)\s*", str(text))
     if match is None:
         raise WrongValue(
@@ -136,6 +150,7 @@ def unit_of(text: object) -> str:
     WrongUnit
         It is no unit.
     """
+    _refuse_comma(text)
     match = re.fullmatch(r"\s*[+-]?\d+(?:\.\d+)?(?:[eE][+-]?\d+)?\s*(.*?)\s*", str(text))
     if match is None or not match[1]:
         return "1"
@@ -186,6 +201,7 @@ class ExpressionReader:
         WrongValue
             It cannot be read, names no quantity, or has another dimension.
         """
+        _refuse_comma(text)
         if isinstance(text, (int, float)) and not isinstance(text, bool):
             return QuantityExpression(f"{amount(text, unit):.15g}")
         tree, literals = self._tree(text)

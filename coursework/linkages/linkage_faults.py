@@ -56,8 +56,17 @@ def linkage_faults(linkage: LinkageFile) -> Iterator[BadInput]:
         )
     if linkage.mobility != 1:
         bodies, pairs, gears = linkage.counts
-        count = f"3 × {bodies} bodies, less 2 × {pairs} pins and slides"
-        count += f", less {gears} gears" if gears else ""
+        if gears:
+            count = Message(
+                "3 × {bodies} bodies, less 2 × {pairs} pins and slides, less {gears} gears",
+                bodies=bodies,
+                pairs=pairs,
+                gears=gears,
+            )
+        else:
+            count = Message(
+                "3 × {bodies} bodies, less 2 × {pairs} pins and slides", bodies=bodies, pairs=pairs
+            )
         does = Message("nothing moves") if linkage.mobility < 1 else Message("one driver does not settle it")
         yield linkage.refused(
             ("bodies",),

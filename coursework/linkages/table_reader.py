@@ -162,6 +162,10 @@ class TableReader(TomlReader):
         wanted = {"r": "mm", "theta": "deg", "omega": "rad/s", "alpha": "rad/s^2"}.get(
             stem[0] if stem else ""
         )
+        if wanted and unit not in (wanted, "1"):
+            raise self.refused(
+                at, "{name} is a value in {unit}; found {value!r}", name=name, unit=wanted, value=value
+            )
         if wanted and unit == "1":
             raise self.refused(
                 at, '{name} needs a unit: "{value} {unit}"', name=name, value=value, unit=wanted

@@ -103,13 +103,35 @@ def table_of(source: str, source_name: str) -> dict[str, Any]:
             "{source_name}: brackets nested too deep to be read", source_name=source_name
         ) from None
     except ValueError as fault:
-        raise BadInput("{source_name}: {problem}", source_name=source_name, problem=fault) from fault
+        raise _syntax_fault(source, source_name, str(fault)) from fault
     if _holds_huge(table):
         raise BadInput(
             "{source_name}: a whole number of more than 64 bits, which TOML does not have",
             source_name=source_name,
         )
     return table
+
+
+def _syntax_fault(source: str, source_name: str, told: str) -> BadInput:
+    """Return what the reader of TOML says, with the line as it stands and what would do where people often slip."""
+    match = re.fullmatch(r"(.*) \(at line (\d+), column \d+\)", told, re.DOTALL)
+    if match is None:
+        return BadInput("{source_name}: {problem}", source_name=source_name, problem=told)
+    problem: object = match[1]
+    if match[1].startswith(("Cannot overwrite", "Cannot declare", "Duplicate", "Cannot mutate")):
+        problem = Message("a name stands here twice")
+    elif match[1].startswith("Illegal character"):
+        problem = Message('a text begins and ends on one line with a straight quotation mark, "')
+    elif match[1].startswith(("Expected", "Invalid value")):
+        problem = Message(
+            'a line is name = value, with texts in straight quotation marks, ", and a decimal point in numbers'
+        )
+    number = int(match[2])
+    line = source.splitlines()[number - 1].strip()[:80]
+    return BadInput(
+        "{source_name}, line {number}: {problem}; found {line}",
+        source_name=source_name, number=number, problem=problem, line=line,
+    )  # fmt: skip
 
 
 def _holds_huge(value: Any) -> bool:

@@ -7,7 +7,8 @@ from linkage_samples import FOLDER
 from tables import each_row
 
 from coursework import open_course
-from coursework.errors import BadCourse
+from coursework.authoring.linkage_files import mechanism_alone
+from coursework.errors import BadCourse, BadInput
 from coursework.linkages.compiled import compiled
 
 TOGGLE = (FOLDER / "exercises" / "toggle.toml").read_text("utf-8")
@@ -25,7 +26,7 @@ FAULTS = [
     ("[ground]", "[grund]", 12, "did you mean 'ground'"),
     ('r1 = "180 mm"', "r1 = 180", 4, '"180 mm"'),
     ('r4 = "150 mm"', 'r4 = "150"', 7, "needs a unit"),
-    ('r4 = "150 mm"', 'r4 = "150 N"', 19, "is in N"),
+    ('r4 = "150 mm"', 'r4 = "150 N"', 7, "r4 is a value in mm"),
     ('omega2 = "12 rad/s"', 'omega2 = "12 rad/parsec"', 9, "parsec"),
     ('from = "40 mm", to = "70 mm"', 'from = "70 mm", to = "40 mm"', 5, "smaller value"),
     ('to = "70 mm", step = "5 mm"', 'to = "70 mm", step = "0 mm"', 5, "above 0"),
@@ -87,6 +88,13 @@ FAULTS = [
     ('{ on = "4", moment', '{ on = "Q", moment', 32, "a moment acts on a body"),
     ("advantage = true", 'advantage = "2"', 31, "turns: 3, 4"),
     ('polygon = ["velocity"', 'polygon = ["jerk"', 29, "'jerk'"),
+    ('r1 = "180 mm"', 'r1 = "180,5 mm"', 4, "a decimal point, not a comma: '180.5 mm'"),
+    ('from = "40 mm"', 'from = "40,5 mm"', 5, "a decimal point"),
+    ('C = ["r1", "0 mm"]', 'C = ["r1", "0,5 mm"]', 14, "a decimal point"),
+    ('r1 = "180 mm"', "r1 = “180 mm”", 4, "straight quotation marks"),
+    ('r1 = "180 mm"', 'r1 = "180 mm', 4, "one line"),
+    ('r1 = "180 mm"', 'r1 = "180 mm"\nr1 = "90 mm"', 5, "a name stands here twice"),
+    ('omega2 = "12 rad/s"', 'omega2 = "12 mm/s"', 9, "a value in rad/s"),
     ("advantage = true", "advantage = true\npoints = { theta7 = 3 }", 32, "no question 'theta7'"),
 ]
 
@@ -156,3 +164,10 @@ def test_words_of_ones_own_replace_the_generated_ones(tmp_path):
     exercise = open_course(folder)["toggle"]
     assert (exercise.title("en"), exercise.title("fr")) == ("The press in hall 3", "Genouillère")
     assert exercise.variant(1, "en").text.title == "The press in hall 3"
+
+
+def test_a_file_that_is_not_utf8_is_told_in_a_line(tmp_path):
+    path = tmp_path / "toggle.toml"
+    path.write_bytes((FOLDER / "exercises" / "toggle.toml").read_text("utf-8").encode("latin-1"))
+    with pytest.raises(BadInput, match="is not UTF-8"), mechanism_alone(path, open_course):
+        pass
