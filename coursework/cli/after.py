@@ -6,6 +6,7 @@ import getpass
 import re
 import sys
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from datetime import date
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -87,6 +88,11 @@ def _several(name: str, metavar: str, **more: Any) -> Callable[[Any], Any]:
 @click.option(
     "--undo", is_flag=True, help="Take the last of these decisions back; with --put-away what was put away."
 )
+@click.option(
+    "--undo-since",
+    metavar="DAY|all",
+    help="Take back all of these decisions from a day on, such as 2026-01-31, or all there are.",
+)
 @click.option("--why", default="", help="Reason, kept with the decision.")
 @click.option("--by", default="", help="Who decides; by default the account that runs the command.")
 @click.option("--yes", is_flag=True, help="Confirm what is previewed.")
@@ -102,6 +108,7 @@ def after(
     db: str | None,
     assignment: str,
     undo: bool,
+    undo_since: str | None,
     put_away: bool,
     cards: bool,
     restated: bool,
@@ -116,7 +123,7 @@ def after(
 
     Without a change it lists the waiting answers, patterns that a person should look at, and every question with a proposal. A
     change is previewed: who goes from which mark to which. --yes confirms it: it is a dated line of decisions.csv, or of the database,
-    that every later grade applies, and --undo takes it back.
+    that every later grade applies, and --undo or --undo-since takes it back.
     """
     from coursework.gradebook.after import restated as restated_of
     from coursework.gradebook.after import undoing
@@ -139,11 +146,8 @@ def after(
         steps += exam.taken_back(by, [words(lang)["after"]["put_away_why"] for lang in languages()])
     elif put_away:
         steps += exam.put_away(by, why or words(language_of_messages())["after"]["put_away_why"])
-    elif undo:
-        standing = exam.decisions.standing_steps
-        if not standing:
-            raise BadInput("nothing is decided that could be undone")
-        steps.append(undoing(standing[-1], by, why))
+    undone = () if put_away else _undone(exam, undo, undo_since)
+    steps += undoing(undone, by, why)
     if put_away and not steps:
         say("no answer that waits says nothing")
         return DONE
@@ -164,10 +168,11 @@ def after(
     if as_json:
         print_json(_preview_json(preview))
     else:
-        _tell_preview(exam, steps, preview)
+        _tell_preview(exam, steps, preview, undone)
     if yes or (not as_json and sys.stdin.isatty() and click.confirm(localised(Message("Confirm?")))):
         confirm(steps, feedback)
-        say("{decisions} kept; --undo takes the last one back", decisions=counted(len(steps), "decision"))
+        told = "{decisions} taken back" if undone else "{decisions} kept; --undo takes the last one back"
+        say(told, decisions=counted(len(steps), "decision"))
     elif not as_json:
         say("nothing is written: --yes confirms it")
     return DONE
@@ -263,6 +268,27 @@ def _steps(exam: Exam, asked: Mapping[str, Any]) -> Iterator[Decision]:
             yield step(kind, points=asked[option])
     if asked["curve"]:
         yield step(kinds.CURVE, answer=asked["curve"])
+
+
+def _undone(exam: Exam, undo: bool, since: str | None) -> Sequence[Decision]:
+    """Return the standing steps that the options take back, in their order."""
+    from coursework.gradebook.after import steps_since
+
+    if not undo and since is None:
+        return ()
+    standing: Sequence[Decision] = exam.decisions.standing_steps
+    if since is None:
+        standing = standing[-1:]
+    elif since != "all":
+        try:
+            standing = steps_since(standing, date.fromisoformat(since))
+        except ValueError:
+            raise BadInput(
+                "--undo-since takes a day such as 2026-01-31, or all; found {found!r}", found=since[:40]
+            ) from None
+    if not standing:
+        raise BadInput("nothing is decided that could be undone")
+    return standing
 
 
 def _split(option: str, text: str) -> tuple[str, str]:
@@ -417,16 +443,20 @@ def _question_row(question: Any, texts: Any, lang: str) -> dict[str, Any]:
     }
 
 
-def _tell_preview(exam: Exam, steps: Sequence[Decision], preview: Preview) -> None:
+def _tell_preview(
+    exam: Exam, steps: Sequence[Decision], preview: Preview, undone: Sequence[Decision]
+) -> None:
     """Print who goes from which mark to which, and the new mean and distribution."""
     from coursework.gradebook import after_words as said
 
     lang = language_of_messages()
     texts, colon = words(lang)["after"], words(lang)["sheet"]["colon"]
     own = [step for step in steps if step.student]
-    for step in steps:
+    for step in steps[: len(steps) - len(undone)]:
         if not step.student:
             click.echo(one_line(said.step_text(exam, step, lang)))
+    for step in reversed(undone):
+        click.echo(one_line(texts["undone"].format(step_line(exam, step, lang))))
     if own:
         click.echo(f"{texts['put_away']}{colon} {_named([f'{one.student} ({one.answer})' for one in own])}")
     changes = preview.changes

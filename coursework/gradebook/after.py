@@ -9,7 +9,7 @@ import re
 from collections import Counter
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
-from datetime import UTC, datetime
+from datetime import UTC, date, datetime
 from functools import cached_property
 from typing import Any, NamedTuple
 
@@ -439,10 +439,18 @@ def step(
     return Decision("", exercise, "", part, kind, points, reason, answer, by, datetime.now(UTC))
 
 
-def undoing(last: Decision, by: str, reason: str = "") -> Decision:
-    """Return the step that takes another back."""
+def undoing(steps: Sequence[Decision], by: str, reason: str = "") -> list[Decision]:
+    """Return the steps that take the last steps back, the last first: a withdrawal is of the last one on its place."""
     now = datetime.now(UTC)
-    return last._replace(kind=WITHDRAWN, points=None, reason=reason, by=by, made=now, line=0, location="")
+    return [
+        one.withdrawn(by=by, made=now, line=0, location="")._replace(reason=reason) for one in reversed(steps)
+    ]
+
+
+def steps_since(steps: Sequence[Decision], day: date) -> Sequence[Decision]:
+    """Return the steps from the first one that was made on a day, of this machine's zone, or after it."""
+    days = (one.made.astimezone().date() if one.made else date.min for one in steps)
+    return steps[next((k for k, made in enumerate(days) if made >= day), len(steps)) :]
 
 
 class Restated(NamedTuple):

@@ -331,7 +331,11 @@ def edited_row(change: Mapping[str, Any]) -> dict[str, Any]:
 def row_of(one: Decision) -> dict[str, Any]:
     """Return the line of ``decisions.csv`` of a decision; of a step with who made it, and the day."""
     row = _row(*one.answer_id, one.answer or "", one.kind, one.points, one.reason)
-    return row | {"by": one.by, "date": one.made and one.made.date().isoformat()} if not one.student else row
+    return (
+        row | {"by": one.by, "date": one.made and one.made.astimezone().date().isoformat()}
+        if not one.student
+        else row
+    )
 
 
 def _row(

@@ -1,6 +1,7 @@
 """The evening after an exam from a folder of marks: what is left, a change with its preview, confirmed and undone."""
 
 import json
+import re
 
 import pytest
 from small_assignment import grade, issue, item, right, table
@@ -88,6 +89,15 @@ def test_a_change_is_previewed_confirmed_applied_by_grade_and_undone(marked, cap
     assert after("--undo", "--yes") == 0
     assert marks_in(folder) == before
     assert [row["kind"] for row in table(folder / "decisions.csv")] == ["neutral", "withdrawn"]
+    assert after("--weight", f"{number}=9", "--bonus", number, "--full", "2", "--yes") == 0
+    assert marks_in(folder) != before
+    assert after("--undo-since", "9999-01-01") == after("--undo-since", "yesterday") == 2
+    capsys.readouterr()
+    assert after("--undo-since", "all") == 0
+    assert re.findall(r"Undone: .*: (2 points|.*bonus|.*9 points)", capsys.readouterr().out)[0] == "2 points"
+    assert after("--undo-since", "2000-01-01", "--yes") == 0
+    assert "3 decisions taken back" in capsys.readouterr().out
+    assert marks_in(folder) == before
 
 
 def test_weights_changed_in_the_file_and_an_accepted_answer_count_when_confirmed(marked, capsys):

@@ -60,6 +60,23 @@ def test_a_change_is_previewed_kept_and_taken_back(desk):
     assert (points(desk), steps_of(desk)) == (before, ())
 
 
+def test_several_changes_are_taken_back_at_once_unless_others_stand_by_then(desk):
+    before, browser, path = points(desk), desk.browser(TEACHER), f"/desk/{desk.number}/after"
+    for asked in ({"kind": "weight", "points": "9"}, {"kind": "bonus"}, {"kind": "neutral"}):
+        browser.fill(path, {"do": "confirm", "question": QUESTION, **asked})
+    page = desk.page(TEACHER, "/after", undo="2")
+    undone = [page.text.index(f"Undone: Question 1.1: {text}") for text in ("neutralised", "a bonus")]
+    assert undone == sorted(undone)
+    assert len(steps_of(desk)) == 3
+    for stale in ({"undo": "2", "of": "4"}, {"undo": "4"}, {"undo": "-1"}, {"undo": "x"}):
+        assert "have changed since" in browser.fill(path, {"do": "undo", **stale}).text
+    assert len(steps_of(desk)) == 3
+    browser.fill(path, {"do": "undo", "undo": "2", "of": "3"})
+    assert [one.kind for one in steps_of(desk)] == ["weight"]
+    browser.fill(path, {"do": "undo", "undo": "1", "of": "1"})
+    assert (points(desk), steps_of(desk)) == (before, ())
+
+
 def test_provisional_marks_are_named_and_left_out_and_non_answers_put_away(desk):
     page = desk.page(TEACHER, "/after", lang="fr")
     assert "Illisibles" in page.text

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 from starlette.responses import Response
@@ -63,7 +63,8 @@ def after_exam(request: Request) -> Response:
     last step back."""
     now = class_here(request)
     if not request.is_post:
-        return _page(request, now, {name: request.query_params.get(name, "") for name in _FIELDS})
+        fields = {name: request.query_params.get(name, "") for name in (*_FIELDS, "undo")}
+        return _page(request, now, fields)
     message, fields = "", dict.fromkeys(_FIELDS, "")
     try:
         message = _done(request, exam_of(now))
@@ -80,8 +81,9 @@ def _done(request: Request, exam: Exam) -> str:
     if asked == "put_away":
         kept, done = exam.put_away(by, texts["put_away_why"]), texts["put_away"]
     elif asked == "undo" and exam.decisions.standing_steps:
-        kept = [undoing(exam.decisions.standing_steps[-1], by)]
-        done = after_words.step_text(exam, kept[0], request.lang)
+        undone = _undone(exam, request.form.text("undo") or "1", request.form.text("of"))
+        kept = undoing(undone, by)
+        done = "; ".join(_undone_text(exam, one, request.lang) for one in reversed(undone))
     elif asked == "confirm":
         kept = [_step({name: request.form.text(name) for name in _FIELDS}, by)]
         exam.preview(kept)  # one that makes no sense stops here
@@ -101,6 +103,25 @@ def _done(request: Request, exam: Exam) -> str:
             **about,
         )
     return str(texts["done"]).format(done)
+
+
+def _undone(exam: Exam, asked: str, seen: str = "") -> Sequence[Decision]:
+    """Return the last standing steps, as many as a page asks for, that saw so many standing.
+
+    Raises
+    ------
+    BadInput
+        There are fewer, or others than the page showed.
+    """
+    steps = exam.decisions.standing_steps
+    count = int(asked) if asked.isdecimal() and len(asked) < 6 else 0
+    if not 0 < count <= len(steps) or seen not in ("", str(len(steps))):
+        raise BadInput("the decisions have changed since: look at them again before you undo any")
+    return steps[-count:]
+
+
+def _undone_text(exam: Exam, undone: Decision, lang: str) -> str:
+    return str(words(lang)["after"]["undone"]).format(after_words.step_text(exam, undone, lang))
 
 
 def _step(fields: Mapping[str, str], by: str) -> Decision:
@@ -127,11 +148,17 @@ def _step(fields: Mapping[str, str], by: str) -> Decision:
 def _page(request: Request, now: ClassState, fields: Mapping[str, str], message: str = "") -> Response:
     exam, lang = exam_of(now), request.lang
     preview: Preview | None = None
-    if fields["kind"]:
+    texts: list[str] = []
+    if fields["kind"] or fields.get("undo"):
         try:
-            change = _step(fields, request.actor.name)
-            preview = exam.preview([change])
-            fields = {**fields, "text": after_words.step_text(exam, change, lang)}
+            if fields["kind"]:
+                changes = [_step(fields, request.actor.name)]
+                texts = [after_words.step_text(exam, one, lang) for one in changes]
+            else:
+                undone = _undone(exam, fields["undo"])
+                changes = undoing(undone, request.actor.name)
+                texts = [_undone_text(exam, one, lang) for one in reversed(undone)]
+            preview = exam.preview(changes)
         except BadInput as fault:
             message = message or localised(fault)
     names_of = Names(now.course, statistics_of(now), lang)
@@ -143,6 +170,7 @@ def _page(request: Request, now: ClassState, fields: Mapping[str, str], message:
         "fields": fields,
         "told": message,
         "preview": preview,
+        "texts": texts,
         "current": current,
         "bins": after_words.bins(current, lang),
         "steps": [
