@@ -154,7 +154,7 @@ def shown(site: Lived) -> list[Shown]:
 NO_PAGES = frozenset(
     (
         "/", "/language", "/who", "/sign-out", "/account/data", "/service-worker.js", "/static/{name}", "/assignments/{number:int}/read-back", "/practice/{exercise}", "/practice/{exercise}/{seed}/draft",
-        "/practice/{exercise}/{seed}/read", "/lessons/{lesson}/figures/{figure}", "/progress/progress.json", "/assignments/{number:int}/keep", "/assignments/{number:int}/hand-in",
+        "/practice/{exercise}/{seed}/read", "/lessons/{lesson}/figures/{figure}", "/lessons/{lesson}/steps/{steps}", "/progress/progress.json", "/assignments/{number:int}/keep", "/assignments/{number:int}/hand-in",
         "/assignments/{number:int}/file", "/assignments/{number:int}/{file}", "/assignments/{number:int}/receipts/{code}.{ending}", "/desk/issued",
         "/assignments/{number:int}/start",
         "/desk/people/add", "/desk/people/add-staff", "/desk/people/extra-time", "/desk/people/{person}/data", "/desk/semester.csv",

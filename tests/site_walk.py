@@ -213,6 +213,7 @@ def fillings(site: Filled) -> dict[str, Filling]:
         "/practice/{exercise}": practice,
         "/lessons/{lesson}": Filling({"lesson": "plane_mechanisms"}),
         "/lessons/{lesson}/figures/{figure}": Filling({"lesson": "plane_mechanisms", "figure": "none.svg"}),
+        "/lessons/{lesson}/steps/{steps}": Filling({"lesson": "plane_mechanisms", "steps": "none"}),
         "/mechanisms/{name}": Filling({"name": "new"}),
         "/explore/{exercise}": Filling({"exercise": "four_bar_motion"}),
         **{

@@ -37,7 +37,7 @@ WHO = {
     "/sign-in": (NOBODY, NOBODY), "/invitation/{token}": (NOBODY, NOBODY),
     **dict.fromkeys(("/practice", "/assignments", "/account/data", "/progress/progress.json"), (STUDENTS, None)),
     **dict.fromkeys(("/sign-out", "/account", "/progress"), (STUDENTS, STUDENTS)),
-    "/lessons/{lesson}": (STUDENTS, STUDENTS), "/lessons/{lesson}/figures/{figure}": (STUDENTS, None),
+    "/lessons/{lesson}": (STUDENTS, STUDENTS), "/lessons/{lesson}/figures/{figure}": (STUDENTS, None), "/lessons/{lesson}/steps/{steps}": (STUDENTS, None),
     "/practice/{exercise}": (STUDENTS, STUDENTS), "/practice/{exercise}/{seed}/motion": (STUDENTS, None),
     "/explore/{exercise}": (STUDENTS, None),
     **{f"/practice/{{exercise}}/{{seed}}{end}": (STUDENTS, STUDENTS) for end in ("", "/draft", "/read", "/solution")},

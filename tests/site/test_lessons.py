@@ -1,5 +1,6 @@
 """Lessons on the site: every piece in steps, links that lead somewhere, blanks that are marked as in a notebook."""
 
+import gzip
 import re
 from html import unescape
 from threading import Thread
@@ -59,7 +60,7 @@ def test_a_lesson_in_steps_says_all_that_its_book_page_says_and_leads_somewhere(
     assert len(ids) == len(set(ids))
     for address in re.findall(r'href="([^"]+)"', html):
         path, _, anchor = address.partition("#")
-        kind, _, target = path.strip("/").partition("/")
+        kind, _, target = path.partition("?")[0].strip("/").partition("/")
         if path.startswith("http"):
             continue
         assert target in {"practice": COURSE.names, "lessons": COURSE.folder.lessons}[kind], address
@@ -99,7 +100,7 @@ def test_a_step_holds_one_idea(name):
 @pytest.mark.e2e
 def test_a_lesson_stands_on_the_site_with_its_figures_and_leads_to_its_exercises(class_, lang):
     browser = class_.browser(ZOE, lang)
-    page = browser.get(f"/lessons/{LESSON}").text
+    page = browser.get(f"/lessons/{LESSON}?whole").text
     at_end = page[page.index('class="step lesson-end"') :]
     taught = [
         n for n in COURSE.folder.in_order if LESSON in [x.name for x in taught_by(COURSE.folder, n, lang)]
@@ -115,7 +116,35 @@ def test_a_lesson_stands_on_the_site_with_its_figures_and_leads_to_its_exercises
     assert words(lang, "site")["lessons"]["contents"] in page
 
 
-@each_row("address", ["no_such", "positions/figures/none.svg", "no_such/figures/none.svg"])
+#: Kilobytes of a lesson's page at most, as the site compresses it: every time, and of its steps, once.
+PAGE_KB, STEPS_KB = 5, 48
+
+
+@every_lesson
+@pytest.mark.parametrize("lang", COURSE.folder.languages)
+@pytest.mark.e2e
+def test_a_lesson_seen_before_weighs_little_for_its_steps_are_kept(class_, name, lang):
+    def sent(address):
+        reply = browser.get(address, headers={"accept-encoding": "gzip"})
+        assert reply.headers["content-encoding"] == "gzip"
+        return reply, len(gzip.compress(reply.content, 6)) / 1000
+
+    browser = class_.browser(ZOE, lang)
+    page, size = sent(f"/lessons/{name}")
+    assert size < PAGE_KB
+    steps, size = sent(re.search(r' data-steps="([^"]+)"', page.text)[1])
+    assert size < STEPS_KB
+    assert "immutable" in steps.headers["cache-control"]
+    assert "_seal" not in steps.text
+    assert "no-store" in page.headers["cache-control"]
+    whole = browser.get(f"/lessons/{name}?whole").text
+    assert re.sub(r'<input type="hidden" name="_seal"[^>]*>', "", whole).find(steps.text.strip()) > 0
+    assert f'content="0; url=/lessons/{name}?whole"' in page.text
+
+
+@each_row(
+    "address", ["positions/steps/none", "no_such", "positions/figures/none.svg", "no_such/figures/none.svg"]
+)
 @pytest.mark.e2e
 def test_other_addresses_of_lessons_lead_nowhere(zoe, address):
     assert zoe.get(f"/lessons/{address}").status_code == 404
@@ -169,7 +198,7 @@ def blanks(page):
 def test_a_blank_is_marked_as_in_a_notebook(zoe, script):
     asked = ("a", "b", "c", "theta3_open", "theta4_open", "theta3_crossed", "theta4_crossed")
     example = coursework.worked("four_bar_positions", seed=38, lang="en", level=4, parts=asked)
-    number, boxes = blanks(zoe.get(f"/lessons/{LESSON}").text)[-1]
+    number, boxes = blanks(zoe.get(f"/lessons/{LESSON}?whole").text)[-1]
     keys = [box.removeprefix("blank-") for box in boxes]
     assert set(keys) == set(example._keys.values())
     walk = example.variant.walk
@@ -191,7 +220,7 @@ def test_a_blank_is_marked_as_in_a_notebook(zoe, script):
 
 
 def test_all_right_is_said_and_nothing_typed_too(zoe):
-    number, boxes = blanks(zoe.get(f"/lessons/{LESSON}").text)[0]
+    number, boxes = blanks(zoe.get(f"/lessons/{LESSON}?whole").text)[0]
     example = coursework.worked("four_bar_positions", seed=234, lang="en", level=2, parts=(
         "a", "b", "c", "theta3_open", "theta4_open", "theta3_crossed", "theta4_crossed"))  # fmt: skip
     right = {
@@ -213,7 +242,7 @@ def test_a_form_marks_no_variant_but_those_of_the_lesson(zoe, example):
 
 
 def test_what_else_a_form_names_changes_nothing_that_is_marked(zoe):
-    number, boxes = blanks(zoe.get(f"/lessons/{LESSON}").text)[0]
+    number, boxes = blanks(zoe.get(f"/lessons/{LESSON}?whole").text)[0]
     form = {"_seal": zoe.seal, "example": number, boxes[0]: "12"}
     script = {"hx-request": "true"}
     plain = zoe.post(f"/lessons/{LESSON}", data=form, headers=script).text
@@ -226,7 +255,7 @@ def test_what_else_a_form_names_changes_nothing_that_is_marked(zoe):
 
 def test_an_exercise_its_hints_and_its_mistakes_lead_to_the_sections_that_help(class_, zoe):
     one = Practising(class_, zoe, "four_bar_positions")
-    links = re.compile(r'href="/lessons/(\w+)#section-(\d+)"')
+    links = re.compile(r'href="/lessons/(\w+)\?whole#section-(\d+)"')
     head = one.page().partition('<form id="sheet"')[0]
     lesson, *_ = taught_by(COURSE.folder, "four_bar_positions", "en")
     assert set(links.findall(head)) == {(lesson.name, number) for number, _ in lesson.places}
@@ -246,7 +275,7 @@ def test_feedback_leads_to_the_lessons_of_what_lost_points(tmp_path):
     page = site.browser(ZOE).get(f"/assignments/{site.number}/feedback").text
     again = page.partition("<h2>To read again</h2>")[2].partition("</section>")[0]
     taught = taught_by(COURSE.folder, EXERCISE, "en")
-    assert set(re.findall(r'href="/lessons/(\w+)#section-(\d+)"', again)) == {
+    assert set(re.findall(r'href="/lessons/(\w+)\?whole#section-(\d+)"', again)) == {
         (lesson.name, number) for lesson in taught for number, _ in lesson.places
     }
 

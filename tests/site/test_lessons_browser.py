@@ -12,7 +12,8 @@ LESSON = "mobility_and_groups"  #: one that is short
 
 
 def shown(page):
-    """The steps that stand on the screen."""
+    """The steps that stand on the screen when all have come."""
+    page.locator(".lesson.stepped, .lesson:not([data-steps])").wait_for()
     steps = page.locator(".step").all()
     return [step.get_attribute("id") for step in steps if step.is_visible()]
 
@@ -23,8 +24,8 @@ def test_a_lesson_is_read_by_touch_to_its_exercise_and_goes_on_where_one_stopped
     page.locator("#chapter-1 summary").tap()
     page.locator(f"a[data-place-of={LESSON}]").tap()
     page.wait_for_url(f"**/lessons/{LESSON}")
-    count = page.locator(".step").count()
     assert shown(page) == ["step-1"]
+    count = page.locator(".step").count()
     for number in range(2, 6):
         page.locator("[data-go='1']").tap()
         page.wait_for_url(f"**#step-{number}")
@@ -67,6 +68,13 @@ def test_another_device_goes_on_where_one_stopped(window):
 
 
 def test_a_link_to_a_section_opens_its_step(window):
+    page = window("/practice/joint_graph")
+    link = page.locator(f"a[href^='/lessons/{LESSON}?whole#section-']").first
+    section = link.get_attribute("href").partition("#")[2]
+    link.tap()
+    page.wait_for_url(f"**/lessons/{LESSON}#{section}")  # its steps are kept
+    [step] = shown(page)
+    assert page.locator(f"#{step} #{section}").is_visible()
     page = window(f"/lessons/{LESSON}#section-6")
     [step] = shown(page)
     assert page.locator(f"#{step} #section-6").is_visible()
@@ -74,6 +82,7 @@ def test_a_link_to_a_section_opens_its_step(window):
 
 def test_what_moves_can_be_stopped(window):
     page = window("/lessons/plane_mechanisms", size="desk")
+    shown(page)
     button = page.locator("figure:has(img[data-still]) button").first
     image = page.locator("figure img[data-still]").first
     moving = image.get_attribute("src")
@@ -89,6 +98,7 @@ def test_a_blank_is_marked_in_its_place(window, desk):
     lesson = lesson_of(class_.site, LESSON, "en")
     number = next(k for k, step in enumerate(lesson.steps, 1) if step.blanks)
     page = window(f"/lessons/{LESSON}#step-{number}")
+    assert shown(page) == [f"step-{number}"]
     form = page.locator(f"#step-{number} form.blanks")
     form.locator("button").tap()
     form.locator(".told p").wait_for()
@@ -108,10 +118,20 @@ def test_a_blank_is_marked_in_its_place(window, desk):
 def test_without_a_script_and_on_a_desk_a_lesson_is_one_page(window, size, script):
     page = window(f"/lessons/{LESSON}", size=size, script=script)
     assert len(shown(page)) == page.locator(".step").count()
+    assert page.locator(".step").count() > 10
     assert not page.locator(".lesson-bar").is_visible()
     if script:
         assert (too_wide(page), serious(page)) == (0, [])
         assert cut_in_print(page)[1] == []
+
+
+def test_steps_that_do_not_come_are_told_and_come_with_the_whole_lesson(window, desk):
+    page = window("/practice", service_workers="block")
+    page.route("**/steps/*", lambda route: route.abort())
+    page.goto(f"{desk[1]}/lessons/{LESSON}")
+    page.locator("[data-missing] a").tap()
+    assert len(shown(page)) == 1
+    assert page.locator(".step").count() > 10
 
 
 @pytest.mark.parametrize("size", ["telephone", "desk"])

@@ -116,6 +116,7 @@ def test_a_seen_page_opens_without_a_network_and_what_is_typed_goes_when_it_is_b
 @pytest.mark.e2e
 def test_a_lesson_opens_without_a_network_with_figures_that_nobody_has_looked_at(place):
     page = opened(place, ZOE, f"/lessons/{LESSON}")
+    page.locator(".lesson.stepped").wait_for()
     wanted = set(page.locator(".lesson img").evaluate_all("all => all.map((one) => one.src)"))
     held = "caches.open('figures').then((one) => one.keys()).then((keys) => keys.map((key) => key.url))"
     until = time.monotonic() + 30
@@ -125,6 +126,7 @@ def test_a_lesson_opens_without_a_network_with_figures_that_nobody_has_looked_at
     page.context.set_offline(True)
     page.reload()
     page.locator("[data-go='1']").tap()
+    assert page.locator(".step").count() > 10
     sizes = page.evaluate("""Promise.all([...document.querySelectorAll('.lesson img')].map((one) => {
       one.loading = 'eager'; return one.decode().then(() => one.naturalWidth); }))""")
     assert len(sizes) > 3

@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from coursework.sheets.book import BlanksPiece
     from coursework.site.frame.settings import Site
 
+WHOLE = "whole"  #: in the address of a lesson that comes with all its steps
 _LIMITS = ResourceLimits(60.0, 1536 * MEGABYTE, niceness=0)  #: of the process that runs a lesson's cells
 
 
@@ -82,8 +83,8 @@ def _address(link: TextLink) -> str:
 
 
 def lesson_address(name: str, section: int | str = 0) -> str:
-    """Return the address of a lesson, or of a section by its number."""
-    return f"/lessons/{name}#section-{section}" if section else f"/lessons/{name}"
+    """Return the address of a lesson, or of a section by its number, which without a script only the whole lesson has."""
+    return f"/lessons/{name}?{WHOLE}#section-{section}" if section else f"/lessons/{name}"
 
 
 def example_of(site: Site, blanks: BlanksPiece, lang: str) -> WorkedExample:

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from hashlib import sha256
 from typing import Any, NamedTuple
 
 from markupsafe import Markup
-from starlette.responses import Response
+from starlette.responses import HTMLResponse, Response
 
 from coursework.database.permissions import Permission
 from coursework.markup import markdown
@@ -19,6 +20,7 @@ from coursework.site.frame.drafts import LONGEST
 from coursework.site.frame.requests import HTTPException, Request, Route
 from coursework.site.frame.responses import opens_offline
 from coursework.site.lessons.lesson_content import (
+    WHOLE,
     example_of,
     exercises_of,
     lesson_address,
@@ -29,7 +31,7 @@ from coursework.site.lessons.places import keep_place, places
 from coursework.site.practice.contents import exercise_title, titles
 
 _BOX = "blank-"  #: before the names of the boxes of blanks
-_YEAR = 365 * 24 * 3600
+_KEPT = f"private, max-age={365 * 24 * 3600}, immutable"
 
 
 class LessonExercise(NamedTuple):
@@ -48,7 +50,8 @@ class CheckedBlank(NamedTuple):
 
 
 def lesson(request: Request) -> Response:
-    """Return the page of a lesson; a form checks the blanks of one of its examples, or keeps the place of its reader."""
+    """Return the page of a lesson, whose steps are a file that browsers keep unless all are asked for; a form checks the blanks of
+    one of its examples, or keeps the place of its reader."""
     name = _name(request)
     if request.is_post and "place" in request.form.texts:
         return keep_place(request, name)
@@ -74,6 +77,7 @@ def lesson(request: Request) -> Response:
         name=name,
         lesson_lang=lesson_lang(request.site, name, request.lang),
         address=lesson_address(name),
+        steps_file="" if request.is_post or WHOLE in request.query_params else _steps_file(request, name),
         place=places(request).get(name, ""),
         number=1 + order.index(name),
         chapter=next((c for c in titles(request.site, request.lang) if _has(c, name)), None),
@@ -121,6 +125,46 @@ def _after(request: Request, name: str) -> tuple[str, str] | None:
     return (lesson_address(name), title) if name else None
 
 
+# --------------------------------------------------------------------- steps
+
+
+def _steps_html(request: Request, name: str, lang: str) -> str:
+    """Return the steps of a lesson for readers of a language. They are the same for everybody: the page has the CSRF token."""
+    written = lesson_lang(request.site, name, lang)
+    names = {
+        "lesson": lesson_of(request.site, name, written),
+        "address": lesson_address(name),
+        "box": _BOX,
+        "count": None,
+        "typed": {},
+        "ticked": {},
+        "checked": {},
+        "checked_example": 0,
+        "csrf_token": "",
+    }
+    return request.site.pages.page("site/student/_lesson_steps", lang, names)
+
+
+def _digest(request: Request, name: str, lang: str) -> str:
+    digest: str = request.site.cache.get(
+        ("steps", name, lang), lambda: sha256(_steps_html(request, name, lang).encode()).hexdigest()[:16]
+    )
+    return digest
+
+
+def _steps_file(request: Request, name: str) -> str:
+    return f"{lesson_address(name)}/steps/{_digest(request, name, request.lang)}"
+
+
+def steps(request: Request) -> Response:
+    """Return the steps of a lesson; the address changes with them."""
+    name, wanted = _name(request), str(request.path_params["steps"])
+    for lang in dict.fromkeys((request.lang, *request.site.languages)):
+        if _digest(request, name, lang) == wanted:
+            return HTMLResponse(_steps_html(request, name, lang), headers={"cache-control": _KEPT})
+    raise HTTPException("page", 404)
+
+
 # -------------------------------------------------------------------- blanks
 
 
@@ -158,12 +202,12 @@ def figure(request: Request) -> Response:
     langs = dict.fromkeys(lesson_lang(request.site, name, lang) for lang in (request.lang, *folder.languages))
     for lang in langs:
         if (svg := lesson_of(request.site, name, lang).figures.get(wanted)) is not None:
-            headers = {"cache-control": f"private, max-age={_YEAR}, immutable"}
-            return Response(svg, headers=headers, media_type="image/svg+xml; charset=utf-8")
+            return Response(svg, headers={"cache-control": _KEPT}, media_type="image/svg+xml; charset=utf-8")
     raise HTTPException("page", 404)
 
 
 ROUTES = (
     Route("/lessons/{lesson}", lesson, Permission.OWN, takes_forms=True, budget=BOXES),
+    Route("/lessons/{lesson}/steps/{steps}", steps, Permission.OWN),
     Route("/lessons/{lesson}/figures/{figure}", figure, Permission.OWN),
 )

@@ -60,7 +60,8 @@ async function posted(event, path) {
     return new Response(null, { status: 204 });
   }
 }
-const isFigure = (url) => /^\/lessons\/[^/]+\/figures\//.test(new URL(url).pathname);
+// A figure, or the steps, of a lesson: its address changes with it.
+const isFigure = (url) => /^\/lessons\/[^/]+\/(figures|steps)\//.test(new URL(url).pathname);
 async function shared(request) {
   const [name, most] = isFigure(request.url) ? [FIGURES, 6 * MOST] : [SHARED, MOST];
   const cache = await caches.open(name), found = await cache.match(request, { ignoreVary: true });

@@ -32,6 +32,12 @@
     }).catch(() => undefined);
   }
 
+  // Without a script a section stands in the whole lesson alone; with one the steps come as a file that the browser keeps.
+  document.addEventListener("click", (event) => {
+    const link = event.target.closest("a[href*='?whole#']");
+    if (link) link.search = "";
+  });
+
   // A page that answers a form is not sent again when it is gone back to.
   const address = document.body.querySelector("[data-address]");
   if (address) history.replaceState(null, "", address.dataset.address);
