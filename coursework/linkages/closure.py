@@ -289,7 +289,10 @@ class _Frames:
                 results.append(abs(slid.real - float(linkage.values[name]) * MM) / sizes[1])
         if order > 1:
             turned = 2j * self.rates[on] * slid.real * way
-            results.append(abs(((place[2] - under[2] - turned) * np.conj(way)).imag) / sizes[2])
+            grown = (place[2] - under[2] - turned) * np.conj(way)
+            results.append(abs(grown.imag) / sizes[2])
+            if (name := f"{track.distance}_ddot") in linkage.values:
+                results.append(abs(grown.real - float(linkage.values[name]) * MM) / sizes[2])
         return results
 
 

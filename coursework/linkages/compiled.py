@@ -12,7 +12,7 @@ from types import ModuleType
 
 from coursework.errors import BadInput, CourseworkError
 from coursework.linkages.drawing import FigureWriter
-from coursework.linkages.entries import GROUND, GivenEntry, LinkageFile, Place
+from coursework.linkages.entries import GROUND, GivenEntry, LinkageFile, Place, SlideEntry
 from coursework.linkages.exact_loops import keep_digits
 from coursework.linkages.expressions import ExpressionReader, QuantityExpression
 from coursework.linkages.formulas import FormulaWriter
@@ -382,6 +382,12 @@ class CompiledLinkage:
             names |= dict.fromkeys(t.replace("theta", stem, 1) for t in self.formulas.followed_turns)
         names |= dict.fromkeys(n for n in linkage.drive.rates[:order] if n in linkage.given)
         names |= dict.fromkeys(
+            f"{s.distance}{end}"
+            for s in linkage.slides.values()
+            for end in ("_dot", "_ddot")[:order]
+            if s.distance != linkage.moved
+        )
+        names |= dict.fromkeys(
             f"{kind}_{point}_{axis}" for point in free for kind in "va"[:order] for axis in "xy"
         )
         listed = ", ".join(names)
@@ -392,16 +398,13 @@ class CompiledLinkage:
         linkage, formulas = self.linkage, self.formulas
         ground = ", ".join(f"{p!r}: {_place(place)}" for p, place in linkage.ground.items())
         bodies = []
-        held, jack = set(linkage.ground), linkage.jack
-        for name in formulas.order:
-            if name in (GROUND, jack):
-                continue
+        jack = linkage.jack
+        for name, start in self._starts.items():
             body = linkage.bodies[name]
             turn = formulas.turns[name]
             angle = repr(turn) if turn.startswith("theta") else turn
-            start = body.at if body.at in held else next((p for p in body.points if p in held), None)
             origin = ""
-            if start is None:
+            if not start:
                 start = formulas.reference[name]
                 origin = f", origin=lambda x{start}, y{start}: x{start} + 1j * y{start}"
             base = linkage.place(start, name)
@@ -409,7 +412,6 @@ class CompiledLinkage:
                 f"{p!r}: {_shifted(place, base)}" for p, place in body.points.items() if p != start
             )
             bodies.append(f"        Body({name!r}, {angle}, {start!r}, {{{places}}}{origin}),")
-            held |= set(body.points)
         slides = [
             f"        Slide({s.at!r}, {s.of!r}, {s.on!r}, {_code(s.along)})," for s in linkage.slides.values()
         ]
@@ -445,6 +447,26 @@ class CompiledLinkage:
             pieces.append(f"    pushed={pushed!r},")
         return "Mechanism(\n" + "\n".join(pieces) + "\n)"
 
+    @cached_property
+    def _starts(self) -> dict[str, str]:
+        """Points at which the frames of the bodies begin for the mechanism, each of one placed before; empty where slides alone hold
+        it."""
+        linkage = self.linkage
+        held, starts = set(linkage.ground), {}
+        for name in self.formulas.order:
+            if name not in (GROUND, linkage.jack):
+                body = linkage.bodies[name]
+                starts[name] = body.at if body.at in held else next((p for p in body.points if p in held), "")
+                held |= set(body.points)
+        return starts
+
+    def _through(self, slide: SlideEntry) -> str:
+        """Return the place on a slide's line in the frame that the mechanism gives the guide."""
+        if slide.on == GROUND or slide.on == self.linkage.jack:
+            return _place(slide.through)
+        start = self._starts[slide.on] or self.formulas.reference[slide.on]
+        return _shifted(slide.through, self.linkage.place(start, slide.on))
+
     def _holder(self, body: str) -> str:
         """Return the point of a body that the ground or a body placed before it holds; none where slides alone hold it."""
         order = self.formulas.order
@@ -456,7 +478,7 @@ class CompiledLinkage:
     def _tracks(self) -> list[str]:
         linkage = self.linkage
         tracks = [
-            f"SlideTrack({s.at!r}, {s.of!r}, {s.on!r}, {_place(s.through)}, {_code(s.along)}, {s.distance!r}), "
+            f"SlideTrack({s.at!r}, {s.of!r}, {s.on!r}, {self._through(s)}, {_code(s.along)}, {s.distance!r}), "
             for s in linkage.slides.values()
         ]
         if linkage.jack:

@@ -251,7 +251,7 @@ class JointReader(TableReader):
                     found=nearest(value, points),
                 )
             return points[value], value
-        return self._place(at, value, (f"a_{at[-1]}", f"a_{at[-1]}", f"e_{at[-1]}", f"gamma_{at[-1]}")), ""
+        return self._place(at, value, (f"p_{at[-1]}", f"p_{at[-1]}", f"q_{at[-1]}", f"gamma_{at[-1]}")), ""
 
     def _gears(self, bodies: Mapping[str, BodyEntry]) -> tuple[GearEntry, ...]:
         results = []
