@@ -25,9 +25,12 @@ OF_FORCES = "forces"
 REFUSED = ("impact", "impacts", "clearance", "clearances", "play", "backlash")
 
 
-def refusal(name: str) -> str:
+def refusal(name: str) -> Message:
     """Return the message for an effect that is never simulated."""
-    return f"{name}: impacts and clearances are not simulated; joints hold without play, and nothing strikes"
+    return Message(
+        "{name}: impacts and clearances are not simulated; joints hold without play, and nothing strikes",
+        name=name,
+    )
 
 
 def check_turns(what: str, exercise: CourseExercise) -> None:

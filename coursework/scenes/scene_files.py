@@ -33,7 +33,7 @@ from typing import Any
 
 from coursework.course.course import Course
 from coursework.course.exercise import CourseExercise
-from coursework.errors import BadInput, CourseworkError, nearest
+from coursework.errors import BadInput, CourseworkError, nearest, unknown
 from coursework.mechanics.loads import STROKES
 from coursework.mechanics.statement import Load, Place
 from coursework.mechanics.wrenches import GRAVITY
@@ -106,7 +106,7 @@ class _SceneReader(TomlReader):
     def _duration(self) -> float:
         duration = self._amount(("duration",), "s", 1.0)
         if not duration > 0:
-            raise self.refused(("duration",), f"a duration is above 0; found {duration:g} s")
+            raise self.refused(("duration",), "a duration is above 0; found {found:g} s", found=duration)
         return float(duration)
 
     def _scene(self, exercise: CourseExercise) -> Scene:
@@ -114,7 +114,7 @@ class _SceneReader(TomlReader):
         for number, effect in enumerate(effects):
             self._with_line(("effects",), check_effect, effect, exercise)
             if effect in effects[:number]:
-                raise self.refused(("effects",), f"the effect {effect!r} is named twice")
+                raise self.refused(("effects",), "the effect {effect!r} is named twice", effect=effect)
         given = self._given(exercise)
         added = self._added(exercise)
         self._check_names(exercise)
@@ -156,11 +156,11 @@ class _SceneReader(TomlReader):
         except BadInput:
             raise
         except CourseworkError as fault:
-            raise self.refused(at, str(fault)) from fault
+            raise self.refused(at, as_message(fault)) from fault
 
     def _checked_name(self, at: Path_, kind: str, name: str, names: Sequence[str]) -> None:
         if name not in names:
-            raise self.refused(at, f"no {kind} {name!r}{nearest(name, names)}")
+            raise self.refused(at, as_message(unknown(kind, name, names)))
 
     # -------------------------------------------------------------------- values
 
@@ -186,13 +186,17 @@ class _SceneReader(TomlReader):
             return {}
         if not isinstance(result, Mapping):
             example = f": {_EXAMPLES[str(at[-1])]}" if str(at[-1]) in _EXAMPLES else ""
-            raise self.refused(at, f"{at[-1]} is a table{example}; found {result!r}")
+            raise self.refused(
+                at, "{key} is a table{example}; found {found!r}", key=at[-1], example=example, found=result
+            )
         return result
 
     def _words(self, key: str) -> tuple[str, ...]:
         result = self.table.get(key, [])
         if not isinstance(result, list) or not all(isinstance(word, str) for word in result):
-            raise self.refused((key,), f'{key} is a list of words: ["…", "…"]; found {result!r}')
+            raise self.refused(
+                (key,), '{key} is a list of words: ["…", "…"]; found {found!r}', key=key, found=result
+            )
         return tuple(result)
 
     def _amount(self, at: Path_, unit: str, otherwise: Any = None) -> Any:
@@ -205,12 +209,21 @@ class _SceneReader(TomlReader):
         if is_bare and unit == "1":
             return float(result)
         if is_bare or (isinstance(result, str) and unit != "1" and _BARE.fullmatch(result)):
-            raise self.refused(at, f'{at[-1]} has a unit: {at[-1]} = "{result} {unit}"; found {result!r}')
+            raise self.refused(
+                at,
+                '{key} has a unit: {key} = "{found} {unit}"; found {found!r}',
+                key=at[-1],
+                found=result,
+                unit=unit,
+            )
         reading = read_number(result, unit) if isinstance(result, str) else None
         if reading is not None and reading.status == "read" and len(reading.values) == 1:
             return reading.values[0]
-        kind = "" if unit == "1" else f" in {unit}"
-        raise self.refused(at, f"{at[-1]} is a number{kind}; found {result!r}")
+        if unit == "1":
+            raise self.refused(at, "{key} is a number; found {found!r}", key=at[-1], found=result)
+        raise self.refused(
+            at, "{key} is a number in {unit}; found {found!r}", key=at[-1], unit=unit, found=result
+        )
 
     # -------------------------------------------------------------------- tables
 
@@ -233,7 +246,10 @@ class _SceneReader(TomlReader):
             if name not in exercise.spec.given:
                 raise self.refused(
                     ("given", name),
-                    f"{exercise.name} has no given quantity {name!r}{nearest(name, exercise.spec.given)}",
+                    "{owner} has no given quantity {name!r}{nearest}",
+                    owner=exercise.name,
+                    name=name,
+                    nearest=nearest(name, exercise.spec.given),
                 )
             unit = exercise.units.get(name, "1")
             if isinstance(value, (int, float)) and not isinstance(value, bool) and unit != "1":
@@ -244,9 +260,15 @@ class _SceneReader(TomlReader):
     def _steps(self) -> int:
         steps = self.table.get("steps", _STEPS)
         if isinstance(steps, bool) or not isinstance(steps, int) or steps < 1:
-            raise self.refused(("steps",), f"steps is a whole number from 1 on; found {steps!r}")
+            raise self.refused(("steps",), "steps is a whole number from 1 on; found {found!r}", found=steps)
         if self.table.get("over", "cycle") != "cycle":
-            raise self.refused(("over",), f'over is "cycle"; found {self.table["over"]!r}')
+            raise self.refused(
+                ("over",),
+                '{key} is "{only}"; found {found!r}',
+                key="over",
+                only="cycle",
+                found=self.table["over"],
+            )
         return steps
 
     def _drive(self, exercise: CourseExercise) -> Motor | None:
@@ -256,7 +278,7 @@ class _SceneReader(TomlReader):
         for key in ("over", "steps"):
             if key in self.table:
                 raise self.refused(
-                    (key,), f"{key} is of a cycle; with a drive the motion is in time: leave one out"
+                    (key,), "{key} is of a cycle; with a drive the motion is in time: leave one out", key=key
                 )
         self._only(self._table(("drive",)), ("torque", "no_load_speed"), ("drive",))
         torque = self._amount(("drive", "torque"), "N*m")
@@ -284,12 +306,14 @@ class _SceneReader(TomlReader):
             centre = complex(x, y)
         elif centre is not None and not isinstance(centre, str):
             raise self.refused(
-                (*at, "centre"), f'centre is a point, or ["x mm", "y mm"] in the body; found {centre!r}'
+                (*at, "centre"),
+                'centre is a point, or ["x mm", "y mm"] in the body; found {found!r}',
+                found=centre,
             )
         mass, inertia = self._amount((*at, "mass"), "kg"), self._amount((*at, "inertia"), "kg*m^2")
         for key, value in (("mass", mass), ("inertia", inertia)):
             if value is not None and value < 0:
-                raise self.refused((*at, key), f"{key} is not negative; found {value:g}")
+                raise self.refused((*at, key), "{key} is not negative; found {found:g}", key=key, found=value)
         return BodyMass(mass, inertia, centre)
 
     @property
@@ -310,12 +334,21 @@ class _SceneReader(TomlReader):
         self._refuse_idle(at, listed)
         kind = "moment" if "moment" in listed or self._is_body(exercise, str(listed["on"])) else "force"
         if listed.get("against", "motion") != "motion":
-            raise self.refused((*at, "against"), f'against is "motion"; found {listed["against"]!r}')
+            raise self.refused(
+                (*at, "against"),
+                '{key} is "{only}"; found {found!r}',
+                key="against",
+                only="motion",
+                found=listed["against"],
+            )
         during = str(listed.get("during", "always"))
         if during not in STROKES:
             raise self.refused(
                 (*at, "during"),
-                f"during is one of {', '.join(STROKES)}; found {during!r}{nearest(during, STROKES)}",
+                "during is one of {names}; found {found!r}{nearest}",
+                names=", ".join(STROKES),
+                found=during,
+                nearest=nearest(during, STROKES),
             )
         if "stroke" in during:
             self._with_line((*at, "during"), check_turns, f"the {during}", exercise)
@@ -344,7 +377,7 @@ class _SceneReader(TomlReader):
         for key, other in (("force", "moment"), ("table", "force"), ("table", "moment"), ("angle", "against"),
                            ("angle", "moment"), ("body", "moment")):  # fmt: skip
             if key in values and other in values:
-                raise self.refused((*at, key), f"a load has {key} or {other}, not both")
+                raise self.refused((*at, key), "a load has {key} or {other}, not both", key=key, other=other)
         if "by" in values and "table" not in values:
             raise self.refused(
                 (*at, "by"), "by is what a table goes by; the load has none: table = [[…, …], […, …]]"
@@ -367,7 +400,12 @@ class _SceneReader(TomlReader):
         if isinstance(result, str) and result in exercise.spec.given:
             if not same_dimension(exercise.units.get(result, "1"), unit):
                 raise self.refused(
-                    (*at, kind), f"{result} is in {exercise.units.get(result, '1')}, a {kind} in {unit}"
+                    (*at, kind),
+                    "{name} is in {found}, and {key} in {unit}",
+                    name=result,
+                    found=exercise.units.get(result, "1"),
+                    key=kind,
+                    unit=unit,
                 )
             return result
         return self._number((*at, kind), result, unit)
@@ -379,7 +417,7 @@ class _SceneReader(TomlReader):
         if listed is None:
             return ()
         if by and by not in exercise.quantity_names:
-            raise self.refused((*at, "by"), f"no quantity {by!r}{nearest(by, exercise.quantity_names)}")
+            raise self.refused((*at, "by"), as_message(unknown("quantity", by, exercise.quantity_names)))
         if (
             not isinstance(listed, list)
             or len(listed) < 2
@@ -387,7 +425,8 @@ class _SceneReader(TomlReader):
         ):
             raise self.refused(
                 (*at, "table"),
-                f'a table lists pairs: [["0 deg", "0 N"], ["90 deg", "200 N"]]; found {listed!r}',
+                'a table lists pairs: [["0 deg", "0 N"], ["90 deg", "200 N"]]; found {found!r}',
+                found=listed,
             )
         position = exercise.units.get(by, "deg") if by else "deg"
         results = [
@@ -401,7 +440,7 @@ class _SceneReader(TomlReader):
         if position == "deg" and results[-1][0] - results[0][0] > 360:
             span = results[-1][0] - results[0][0]
             raise self.refused(
-                (*at, "table"), f"a table by an angle spans a turn at most; found {span:g} deg"
+                (*at, "table"), "a table by an angle spans a turn at most; found {found:g} deg", found=span
             )
         return tuple(results)
 
@@ -418,7 +457,7 @@ class _SceneReader(TomlReader):
     def _coefficient(self, at: Path_, result: Any) -> float:
         value = self._number(at, result, "1")
         if value < 0:
-            raise self.refused(at, f"a coefficient of friction is not negative; found {value:g}")
+            raise self.refused(at, "a coefficient of friction is not negative; found {found:g}", found=value)
         return value
 
     def _flywheel(self) -> Flywheel | None:

@@ -45,7 +45,13 @@ FOR_USERS = {
 }
 
 #: Readers of TOML files, which refuse a key by a template.
-REFUSING = ("issuing/assignment", "linkages/", "platforms/lti/settings", "system/toml_files")
+REFUSING = (
+    "scenes/scene_files",
+    "issuing/assignment",
+    "linkages/",
+    "platforms/lti/settings",
+    "system/toml_files",
+)
 
 
 def calls():
