@@ -94,7 +94,7 @@ def _linked(course: Course[Any], text: str, lang: str, there: Collection[str]) -
             )
         return f"[{link.said}]({notebook_name(link.name, lang)}{position})"
 
-    return relinked(text, write)
+    return relinked(source.with_figures(text, lambda said, _: said), write)
 
 
 def _attached(displayed: DrawnPiece) -> Mapping[str, str]:

@@ -2,7 +2,7 @@
 
 A lesson is Markdown. A ```` ```python ```` fence is a cell, with ``{tags=…}`` after the word; a ```` ```answer ```` fence is the answer to the question
 above it; a picture stands on a line of its own, ``![caption](figure:NAME)`` or ``![caption](exercise:NAME?seed=3)``. Links lead to
-``exercise:NAME``, ``lesson:NAME`` and ``lesson:NAME#3``, and ``[a term](#index "entry")`` is a term of the book's index.
+``exercise:NAME``, ``lesson:NAME`` and ``lesson:NAME#3``, ``[the figure](figure:NAME)`` cites a figure of the lesson by its number, and ``[a term](#index "entry")`` is a term of the book's index.
 """
 
 from __future__ import annotations
@@ -65,6 +65,7 @@ Block: TypeAlias = LessonProse | CodeCell | LessonAnswer | LessonImage
 _FENCE = re.compile(
     r"^(```+)(\w*)[ \t]*(?:\{tags=([\w,-]+)\})?[ \t]*\n(.*?)^\1[ \t]*$", re.DOTALL | re.MULTILINE
 )
+_CITED = re.compile(r"\[([^\[\]]+)\]\(figure:(\w+)\)")
 _MARK = re.compile(r"^(```+)(.*?)[ \t]*$")
 _OPENED = re.compile(r"(\w*)[ \t]*(?:\{tags=[\w,-]+\})?")
 _WORDS = ("python", "answer")  #: of fences that are more than text in a fixed pitch
@@ -166,6 +167,11 @@ def _image(image: re.Match[str], file: str, line: int) -> LessonImage:
     )
 
 
+def with_figures(text: str, write: Callable[[str, str], str]) -> str:
+    """Replace each ``[words](figure:NAME)`` of a text by what ``write`` makes of the words and the name."""
+    return _CITED.sub(lambda found: write(found[1], found[2]), text)
+
+
 def mistakes_shown(cell: CodeCell) -> Iterator[tuple[str, str]]:
     """Yield the exercise and the name of each mistake that a cell shows by ``coursework.mistakes("EXERCISE", "NAME")``."""
     for call in ast.walk(ast.parse(cell.code)):
@@ -179,8 +185,8 @@ def mistakes_shown(cell: CodeCell) -> Iterator[tuple[str, str]]:
                 yield str(named[0]), str(mistake)
 
 
-_FORMS = 'exercise:NAME, lesson:NAME, lesson:NAME#3, #index "entry" or https://…'
-_LEADS = re.compile(r"(exercise:\w+|lesson:\w+(#\d+)?|(https?://|mailto:).+)")
+_FORMS = 'exercise:NAME, figure:NAME, lesson:NAME, lesson:NAME#3, #index "entry" or https://…'
+_LEADS = re.compile(r"(exercise:\w+|figure:\w+|lesson:\w+(#\d+)?|(https?://|mailto:).+)")
 _PICTURE = re.compile(r"!\[[^\]]*\]\(")
 _CODE = re.compile(r"```.*?```|`[^`\n]*`", re.DOTALL)
 _SECTION = re.compile(r"^## +(\d+)\.", re.MULTILINE)

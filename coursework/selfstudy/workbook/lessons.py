@@ -19,7 +19,17 @@ from coursework.selfstudy.workbook import lesson_source as source
 from coursework.selfstudy.workbook.lesson_source import lines_of_words, place_of, proofread
 from coursework.selfstudy.workbook.numbering import LessonNumbers, boxes_of
 from coursework.selfstudy.workbook.running import CellOutput, CellSession, drawn
-from coursework.sheets.book import CodePiece, DrawnPiece, HeadPiece, LaterPiece, LessonText, Piece, ProsePiece
+from coursework.sheets.book import (
+    BoxPiece,
+    CodePiece,
+    DrawnPiece,
+    HeadPiece,
+    LaterPiece,
+    LessonText,
+    Piece,
+    ProsePiece,
+    TablePiece,
+)
 
 _TITLE = re.compile(r"\A# +[^\n]*\n*")
 #: A paragraph, with the formulas and the words that go on after a colon or a formula.
@@ -117,7 +127,9 @@ def _drawn_and_run(course: Course[Any], name: str, lang: str, lesson: LessonFile
                 block, next((b for b in blocks[place + 1 :] if isinstance(b, source.LessonProse)), None)
             )
     title = lesson_title(course.folder, name, lang)
-    return LessonText(name, number, lang, title, tuple(created.pieces), tuple(created.answers), lesson.terms)
+    pieces, *told = created.citing(created.pieces, *(told for _, told in created.answers))
+    answers = tuple(zip((k for k, _ in created.answers), told, strict=True))
+    return LessonText(name, number, lang, title, pieces, answers, lesson.terms)
 
 
 def _untitled(blocks: Sequence[source.Block]) -> Iterator[source.Block]:
@@ -139,6 +151,7 @@ class _Lesson:
         self.pieces: list[Piece] = []
         self.answers: list[tuple[int, tuple[Piece, ...]]] = []
         self._asks_there = False  #: what explains the last prediction ends with a question
+        self._figures: dict[str, str] = {}  #: the numbers of the lesson's own figures, by name
 
     def add(self, block: source.Block, next_prose: source.LessonProse | None = None) -> None:
         """Add a block; ``next_prose`` is the running text that follows it."""
@@ -146,14 +159,36 @@ class _Lesson:
             case source.LessonProse():
                 self._prose(block.text)
             case source.LessonImage():
-                picture = drawn(self._course, self._name, block, self._lang)
-                self.pieces.append(self._numbers.figure(picture))
+                picture = self._numbers.figure(drawn(self._course, self._name, block, self._lang))
+                if block.kind == "figure":
+                    self._figures[block.name] = picture.number
+                self.pieces.append(picture)
             case source.LessonAnswer() if self._asks_there:
                 self._tell((ProsePiece(block.text),))
             case source.LessonAnswer():
                 self._later((ProsePiece(block.text),))
             case source.CodeCell():
                 self._cell(block, next_prose is not None and self._explains(next_prose.text))
+
+    def citing(self, *parts: Sequence[Piece]) -> Iterator[tuple[Piece, ...]]:
+        """Yield some pieces at a time, with the numbers of the figures that their texts cite."""
+        form = words(self._lang)["lesson"]["figure"]
+
+        def write(said: str, name: str) -> str:
+            if name not in self._figures:
+                raise BadCourse(
+                    f"{self._name}: the lesson shows no figure {name!r}{nearest(name, self._figures)}"
+                )
+            number = form.format(self._figures[name])
+            return number if said[:1].isupper() else number[:1].lower() + number[1:]
+
+        for pieces in parts:
+            yield tuple(
+                replace(one, text=source.with_figures(one.text, write))
+                if isinstance(one, ProsePiece | BoxPiece | TablePiece)
+                else one
+                for one in pieces
+            )
 
     def _explains(self, text: str) -> bool:
         """Return True if a text explains the last prediction: only drawings stand between."""

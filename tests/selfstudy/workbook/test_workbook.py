@@ -160,6 +160,15 @@ def test_a_lesson_is_told_run_and_drawn(small):
     assert "<animate" in moving.svg
 
 
+def test_a_lesson_cites_its_figures_by_their_numbers(folder):
+    path = folder / "exercises/lessons/rods.en.md"
+    path.write_text(
+        path.read_text("utf-8").replace("Back to", "See [the figure](figure:one_rod). Back to"), "utf-8"
+    )
+    told = lesson_text(coursework.open_course(folder), "rods", "en")
+    assert any("See figure 1.1. Back to" in getattr(piece, "text", "") for piece in told.pieces)
+
+
 def test_a_lesson_leaves_nothing_behind(small, tmp_path, monkeypatch):
     here = tmp_path / "here"
     here.mkdir()
