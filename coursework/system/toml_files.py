@@ -122,12 +122,14 @@ def _syntax_fault(source: str, source_name: str, told: str) -> BadInput:
         problem = Message("a name stands here twice")
     elif match[1].startswith("Illegal character"):
         problem = Message('a text begins and ends on one line with a straight quotation mark, "')
+    elif match[1].endswith(("a table declaration", "an array declaration")):
+        problem = Message("a table begins with [name], each of several alike with [[name]]")
     elif match[1].startswith(("Expected", "Invalid value")):
         problem = Message(
             'a line is name = value, with texts in straight quotation marks, ", and a decimal point in numbers'
         )
     number = int(match[2])
-    line = source.splitlines()[number - 1].strip()[:80]
+    line = source.split("\n")[number - 1].strip()[:80]
     return BadInput(
         "{source_name}, line {number}: {problem}; found {line}",
         source_name=source_name, number=number, problem=problem, line=line,

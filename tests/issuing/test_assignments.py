@@ -91,7 +91,7 @@ def by_student(found):
         ("title = { fr", 'title = { xx = "?", fr', r"line 1: title: no language 'xx'"),
         ('name = "grashof"', 'name = "vocabulary"', r"line 20: vocabulary appears twice"),
         ('[[exercises]]\nname = "grashof"', '[[exercises]]\nnmae = "grashof"', r"line 20: no key 'nmae'"),
-        ("date = 2026-12-04", "date = ", r"week3.toml: "),
+        ("date = 2026-12-04", "date = ", r"week3.toml, line 3: "),
     ],
 )
 def test_what_makes_no_sense_is_told_with_its_line_and_the_nearest_name(tmp_path, before, after, said):

@@ -92,7 +92,7 @@ def test_a_platform_that_is_told_again_takes_its_own_place():
         (('deployments = ["3"]', "deployments = []"), "a platform needs deployments"),
         (("[service]", "[serivce]"), "no key 'serivce'"),
         (("[service]", "[service]\nsession_hours = 0"), "session_hours"),
-        (("[[platforms]]", "[[platforms]"), "Expected ']]'"),
+        (("[[platforms]]", "[[platforms]"), "found [[platforms]"),
     ],
 )
 def test_what_makes_no_sense_is_told_with_its_line(tmp_path, change, said):
