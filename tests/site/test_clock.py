@@ -3,13 +3,14 @@
 import logging
 from dataclasses import replace
 from datetime import UTC, datetime, timedelta
+from threading import Event
 
 import pytest
 from site_assignments import ASSIGNMENT, USUAL, dealt
 from site_people import MAX, TEACHER, ZOE, Class
 
 from coursework.database.publication import published
-from coursework.site.frame.clock import LEAP, STEADY, SteadyClock, is_steady
+from coursework.site.frame.clock import LEAP, STEADY, SteadyClock, is_steady, last_leap
 
 NOW = datetime(2026, 11, 23, 9, tzinfo=UTC)
 MONTH, DAY, MINUTE = timedelta(days=30), timedelta(days=1), timedelta(minutes=1)
@@ -163,3 +164,28 @@ def test_a_clock_that_stays_ahead_is_believed_and_one_that_is_set_back_is_follow
     assert clock() == machine.true
     clock.settle()
     assert "set back by 30 days" in machine.one.browser(TEACHER).get("/desk").text.replace("\xa0", " ")
+
+
+def test_of_two_leaps_the_later_one_is_recorded_however_slow_the_database_is(machine, monkeypatch):
+    clock = machine.one.site.clock
+    clock()
+    clock.settle()
+    begin, first, goes_on = machine.one.site.store.begin, [True], Event()
+
+    def slow_once():
+        if first and first.pop():
+            goes_on.wait(5)
+        return begin()
+
+    monkeypatch.setattr(machine.one.site.store, "begin", slow_once)
+    machine.wrong = MONTH
+    clock()
+    slow = clock._noting
+    machine.passes(timedelta(seconds=STEADY) + MINUTE)
+    clock()
+    clock._noting.join(0.2)
+    goes_on.set()
+    slow.join()
+    clock.settle()
+    with machine.one.site.store.reading() as connection:
+        assert not last_leap(connection, clock()).held

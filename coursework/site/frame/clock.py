@@ -96,7 +96,8 @@ class SteadyClock:
             if is_due:
                 self._noted = elapsed
         if is_due:  # in a thread, since the caller may hold a transaction
-            self._noting = Thread(target=self._note, args=(now, elapsed, leap), name="clock", daemon=True)
+            args = now, elapsed, leap, self._noting
+            self._noting = Thread(target=self._note, args=args, name="clock", daemon=True)
             self._noting.start()
         return now
 
@@ -126,8 +127,10 @@ class SteadyClock:
         """Return True if a date may be recorded as passed for good."""
         return self._leapt is None and self._elapsed() >= self._steady_from
 
-    def _note(self, now: datetime, elapsed: float, leap: Leap | None) -> None:
-        """Record the time of the site and a new leap; an unavailable database is no fault here."""
+    def _note(self, now: datetime, elapsed: float, leap: Leap | None, before: Thread | None) -> None:
+        """Record the time of the site and a new leap, after the record before; an unavailable database is no fault here."""
+        if before is not None:  # of two leaps, the later one is to stand in the database
+            before.join()
         if leap is not None:
             LOG.error(
                 "the clock of this machine leapt by %.0f s; %s",
