@@ -114,6 +114,7 @@ def test_no_output_of_the_desk_tells_names_until_nothing_waits(desk):
     for address in outputs(desk.number):
         for name, text in said(address, browser.get(address).content):
             met += [name] if "XYZ-222" in text or "xyz-222" in name else []
+            text = re.sub(r"\b[0-9a-f]{32,}\b", "", text)  # a token spells names by chance
             if found := known.search(f"{name}\n{text}".replace(TEACHER, "")):
                 told[name] = text[max(0, found.start() - 60) : found.end() + 40]
     assert told == {}
