@@ -141,7 +141,6 @@ def write_marks(
     with Tables(out, spreadsheet) as tables:
         marks = tables.open("marks.csv", marks_columns(issued, submitted=sheets.is_dated))
         rejected = tables.open("rejected.csv", REJECTED_COLUMNS)
-        changes = tables.open("changes.csv", CHANGES_COLUMNS) if before.exists else None
         standing = _standing(results, files, decisions)
         if adjustments:  # these need all sheets of a student
             standing = iter(adjustments.applied(standing, issued, margins_of(course, issued)))
@@ -162,7 +161,7 @@ def write_marks(
         book.warnings += notes
         book.waiting = files.waiting
         _write_decisions(files, tables, book)
-        _write_counts(book, tables, rejected, changes, history)
+        _write_counts(book, tables, rejected, history if before.exists else None)
         stood = files.is_edited or (out / EDITED_FILE).exists()
         edited = not is_as_written(out / _WRITTEN, marks.path) and before.edited(out / "summary.csv")
         if book.changes and (stood or edited):
@@ -188,15 +187,14 @@ def _day(form: FeedbackForm) -> str:
     return (form.today or datetime.date.today()).isoformat()
 
 
-def _write_counts(
-    book: Gradebook, tables: Tables, rejected: TableFile, changes: TableFile | None, history: History
-) -> None:
+def _write_counts(book: Gradebook, tables: Tables, rejected: TableFile, history: History | None) -> None:
     columns, rows = gradebook.summary_table(book)
     summary = tables.open("summary.csv", columns)
     for row in rows:
         summary.write(row)
-    if changes is not None:
-        tables.replace_first(changes)  # stopped after the summary, the marks before would be gone
+    if history is not None:
+        # Opened last, it is replaced first: stopped after the summary, the marks before would be gone.
+        changes = tables.open("changes.csv", CHANGES_COLUMNS)
         for change in history.rows(rows):
             changes.write(change)
     for row in gradebook.rejected_rows(book.rejected):
@@ -243,7 +241,6 @@ def grade_edited_marks(
     history = History(out, _day(form), issued.renamed)
     with Tables(out, spreadsheet) as tables:
         rejected = tables.open("rejected.csv", REJECTED_COLUMNS)
-        changes = tables.open("changes.csv", CHANGES_COLUMNS)
         edited = []
         decided = adjustments.applied(map(decisions.apply, machine), issued, margins_of(course, issued))
         for graded, marked_now in zip(machine, decided, strict=True):
@@ -258,7 +255,7 @@ def grade_edited_marks(
             line.verdict == TO_MARK for graded_sheet in sheets_shown for line in graded_sheet.lines.values()
         )
         _write_decisions(files, tables, book, edited)
-        _write_counts(book, tables, rejected, changes, history)
+        _write_counts(book, tables, rejected, history)
         if feedback:
             renew_feedback(course, book, sheets_shown, out, progress, form, tables.check)
         tables.commit()

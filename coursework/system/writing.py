@@ -251,11 +251,6 @@ class Tables:
         self._tables.append(TableFile(path, columns, self._spreadsheet))
         return self._tables[-1]
 
-    def replace_first(self, table: TableFile) -> None:
-        """Replace a table before those that are open now, as if it were opened last."""
-        self._tables.remove(table)
-        self._tables.append(table)
-
     def check(self) -> None:
         """Raise if a table is not complete or cannot be replaced."""
         for table in self._tables:
