@@ -111,6 +111,10 @@ def _following(function: Callable[..., Any]) -> Callable[..., Any]:
     return call
 
 
+#: Modules whose functions only pass values to the functions and operators that they are called with.
+_PASSING_ON = ("builtins", "functools", "_functools", "itertools", "operator", "_operator")
+
+
 class Lens(OtherNames):
     """Functions of a course for numbers with units. ``constants``: the sizes of constants of its modules, by
     name."""
@@ -145,7 +149,7 @@ class Lens(OtherNames):
             return getattr(_Numpy(), value.__name__, value)
         if isinstance(value, FunctionType) and package_of(value) == package:
             return self(value)
-        return value if home == "builtins" else opaque(value)
+        return value if home in _PASSING_ON else opaque(value)
 
     @staticmethod
     def _module(module: ModuleType) -> Any:
@@ -153,4 +157,6 @@ class Lens(OtherNames):
             return _Numpy()
         if module is degrees:
             return SimpleNamespace(**{**vars(degrees), **_OF_DEGREES})
+        if module.__name__ in _PASSING_ON:
+            return module
         return _Math(module) if module in (math, cmath) else opaque(module)

@@ -125,6 +125,7 @@ ON_PURPOSE = {
     "degrees a second": ("mm", "deg/s", "mm/s", "return r * np.radians(omega)"),
     "degrees by hand": ("mm", "deg/s", "mm/s", "return r * omega * np.pi / 180"),
     "a constant with its unit": ("mm", "rad/s", "mm/s", "return r * omega + RISE * omega"),
+    "one after the other": ("mm", "rad/s", "mm/s", "return reduce(np.multiply, (r, omega))"),
 }
 FORGOTTEN = {
     "no thousand": ("mm", "rad/s", "m/s", "return r * omega"),
@@ -132,6 +133,7 @@ FORGOTTEN = {
     "no 3.6": ("m", "rad/s", "km/h", "return r * omega"),
     "no turn": ("mm", "tr/min", "mm/s", "return r * omega"),
     "no degree": ("mm", "deg/s", "mm/s", "return r * omega"),
+    "one after the other": ("mm", "rad/s", "mm/s", "return reduce(np.add, (r * omega, r))"),
     "a constant in another unit": ("cm", "rad/s", "cm/s", "return r * omega + RISE * omega"),
 }
 
@@ -149,7 +151,7 @@ def crank_pin(small_course, r, omega, v, formula):
     path.write_text(text.replace('unit="mm/s"', f'unit="{v}"'), "utf-8")
     path = small_course / "solutions" / "crank_pin.py"
     text = path.read_text("utf-8").replace("return r * omega\n", f"{formula}\n")
-    path.write_text(text + '\nRISE = 5\nUNITS = {"RISE": "mm"}\n', "utf-8")
+    path.write_text(text + '\nfrom functools import reduce\nRISE = 5\nUNITS = {"RISE": "mm"}\n', "utf-8")
     return coursework.open_course(small_course)["crank_pin"]
 
 
