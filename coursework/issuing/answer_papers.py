@@ -89,8 +89,3 @@ def printed_handouts(
     code = paper_code(assignment, issues[0].student, issues[0].sitting, records, size)
     pages = answer_pages(variants, lang, size, code)
     return tuple(replace(handout, answer_pages=pages) for handout in handouts)
-
-
-def printed_handout(issue: Issue, lang: str, size: str = "") -> Handout:
-    """Return the printed handout of an exercise that is handed out alone."""
-    return printed_handouts((issue,), lang, size)[0]

@@ -2,7 +2,7 @@
 
 A linkage is turned by the cosine and sine of its crank angle and of half of it. A number of radians
 cannot say half a turn exactly; a number of degrees can. So every function of the core that takes a
-crank angle takes radians or a :class:`HalfAngle` made here.
+crank angle takes radians or :class:`Degrees`.
 """
 
 from __future__ import annotations
@@ -15,20 +15,6 @@ import numpy as np
 
 from coursework import degrees
 from coursework.kinematics.elementary import tangent
-
-
-class HalfAngle(NamedTuple):
-    """Direction as four numbers: cosine and sine of its angle and of half its angle (scalars or arrays of one
-    shape).
-
-    ``half_cos`` and ``half_sin`` are those of half the angle, signed: they tell an angle from the same angle
-    a turn later, which a linkage that passes a change point needs.
-    """
-
-    cos: Any
-    sin: Any
-    half_cos: Any
-    half_sin: Any
 
 
 class Degrees(NamedTuple):
@@ -134,21 +120,6 @@ def _quarters_on(quarters: Any, cos_squared: Any, sin_squared: Any, both: Any) -
     )
 
 
-def heading_in_degrees(angle: Any) -> Degrees:
-    """Return the heading of an angle in degrees, reduced exactly: at 180 the sine and the half cosine are 0.
-
-    Parameters
-    ----------
-    angle
-        Degrees; a scalar or an array.
-
-    Returns
-    -------
-    The heading, of the same shape.
-    """
-    return Degrees(angle)
-
-
 def taken_apart(angle: Any) -> tuple[Callable[..., Any], tuple[Any, ...]]:
     """Return a constructor and the arrays from which it builds these radians or this heading again.
 
@@ -161,58 +132,12 @@ def taken_apart(angle: Any) -> tuple[Callable[..., Any], tuple[Any, ...]]:
     -------
     The constructor, and as many arrays of floats as it takes, of that shape.
     """
-    make, parts = (type(angle), angle) if isinstance(angle, (HalfAngle, Degrees)) else (_radians, (angle,))
+    make, parts = (type(angle), angle) if isinstance(angle, Degrees) else (_radians, (angle,))
     return make, tuple(np.asarray(part, dtype=float)[()] for part in parts)
 
 
 def _radians(angle: Any) -> Any:
     return angle
-
-
-def heading_after_turns(turns: Any, angle: Any) -> HalfAngle:
-    """Return the heading after whole turns and a further angle in radians; the turns cost no digit of the
-    angle.
-
-    Parameters
-    ----------
-    turns
-        Number of turns, whole; a scalar or an array.
-    angle
-        The further angle, radians; a scalar or an array that broadcasts with the turns.
-
-    Returns
-    -------
-    The heading, of the broadcast shape.
-
-    Source
-    ------
-    Cosine and sine of half the angle change sign with each turn.
-    """
-    sign = np.where(np.mod(turns, 2) == 0, 1.0, -1.0)[()]
-    half = np.multiply(angle, 0.5)
-    return HalfAngle(np.cos(angle), np.sin(angle), sign * np.cos(half), sign * np.sin(half))
-
-
-def heading_of(cos: Any, sin: Any) -> HalfAngle:
-    """Return the heading of a unit vector, its angle in (-pi, pi].
-
-    Parameters
-    ----------
-    cos, sin
-        Components of the unit vector; scalars or arrays of one shape.
-
-    Returns
-    -------
-    The heading, of that shape.
-
-    Source
-    ------
-    Cosine and sine of half the angle are the roots of :func:`halves`; the sine has the sign of ``sin``.
-    """
-    larger, smaller = halves(np.abs(cos), sin)
-    ahead = np.greater_equal(cos, 0)
-    half_cos, half_sin = np.sqrt(np.where(ahead, larger, smaller)), np.sqrt(np.where(ahead, smaller, larger))
-    return HalfAngle(cos, sin, half_cos[()], np.copysign(half_sin, sin)[()])
 
 
 def full_angle(angle: Any) -> tuple[Any, Any]:
@@ -227,7 +152,7 @@ def full_angle(angle: Any) -> tuple[Any, Any]:
     -------
     Cosine and sine, of that shape.
     """
-    if isinstance(angle, (HalfAngle, Degrees)):
+    if isinstance(angle, Degrees):
         return angle.cos, angle.sin
     return np.cos(angle), np.sin(angle)
 
@@ -244,7 +169,7 @@ def half_angle(angle: Any) -> tuple[Any, Any]:
     -------
     Cosine and sine of half the angle, of that shape.
     """
-    if isinstance(angle, (HalfAngle, Degrees)):
+    if isinstance(angle, Degrees):
         return angle.half_cos, angle.half_sin
     half = np.multiply(angle, 0.5)
     return np.cos(half), np.sin(half)

@@ -15,7 +15,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from coursework.errors import CannotAssemble, Undefined, WrongValue
-from coursework.kinematics.angles import Degrees, HalfAngle, full_angle
+from coursework.kinematics.angles import Degrees, full_angle
 from coursework.kinematics.scaling import exponent_of, scaled
 from coursework.kinematics.vectors import derivative
 from coursework.system.blocks import in_blocks
@@ -84,7 +84,7 @@ class ClosedChain:
         Parameters
         ----------
         known
-            Values by name, scalars or arrays that broadcast; angles in radians or as :class:`HalfAngle`.
+            Values by name, scalars or arrays that broadcast; angles in radians or as :class:`Degrees`.
         start
             A first guess of each unknown, scalars or arrays that broadcast with the known values.
 
@@ -98,12 +98,12 @@ class ClosedChain:
             Scalars only: no closed pose was reached from this start; says what gap is left. In arrays
             such a place is NaN and not ``converged``.
         """
-        directions = {name: known[name] for name in self.known if name in self._angles}
         directions = {
-            name: value
-            if isinstance(value, (HalfAngle, Degrees))
-            else HalfAngle(*full_angle(np.asarray(value, float)), 0.0, 0.0)
-            for name, value in directions.items()
+            name: full_angle(
+                known[name] if isinstance(known[name], Degrees) else np.asarray(known[name], float)
+            )
+            for name in self.known
+            if name in self._angles
         }
         lengths = {name: np.asarray(known[name], float) for name in self.known if name in self._lengths}
         exponent = exponent_of(*lengths.values(), *self._measures, 0.0)
@@ -114,7 +114,7 @@ class ClosedChain:
         inputs = [
             exponent,
             *[scaled(value, -exponent) for value in lengths.values()],
-            *[part for value in directions.values() for part in (value.cos, value.sin)],
+            *[part for value in directions.values() for part in value],
             *guesses,
         ]
 

@@ -17,7 +17,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from coursework.kinematics.angles import Degrees, HalfAngle, half_angle
+from coursework.kinematics.angles import Degrees, half_angle
 
 
 class Sweep(NamedTuple):
@@ -54,8 +54,6 @@ def sweep(angle: Any, w: Any) -> Sweep:
     """
     if isinstance(angle, Degrees):
         return Sweep(*angle.half_squares(w))
-    if isinstance(angle, HalfAngle):
-        return Sweep(w * angle.half_cos**2, w * angle.half_sin**2, (0.5 * w) * angle.sin)
     tangent = np.tan(angle * 0.5)
     squared = tangent * tangent
     cos_squared = w / (1 + squared)

@@ -185,29 +185,6 @@ class SliderCrank:
         """
         return self._restored(self._evaluate(_displacement, crank_angle)[0])
 
-    def pressure_angle(self, crank_angle: Any) -> Any:
-        """Return the angle between rod and line; the conditioning of the slider is its 1/cos.
-
-        Parameters
-        ----------
-        crank_angle
-            Radians or a heading (:mod:`angles`), of any shape that broadcasts with the lengths.
-
-        Returns
-        -------
-        Radians in [0, pi/2], of the broadcast shape.
-
-        Raises
-        ------
-        CannotAssemble
-            Scalars only: the rod does not reach the line. NaN in arrays.
-
-        Source
-        ------
-        Its tangent is ``|e - r sin| / |run|``.
-        """
-        return self._evaluate(_pressure_angle, crank_angle)[0]
-
     def conditioning(self, crank_angle: Any) -> Any:
         """Return the factor from an error of the rod to one of the slider.
 

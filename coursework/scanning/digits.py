@@ -1,4 +1,4 @@
-"""Digits and minus signs written by hand in printed boxes: what stands in each, and how sure that is."""
+"""Digits written by hand in printed boxes: the digit in each and its confidence."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ Floats: TypeAlias = NDArray[np.float32]
 EMPTY = -1
 
 #: Classes of the net: the ten digits, an empty box, a minus sign, and what is none of these.
-BLANK, MINUS, OTHER = 10, 11, 12
+BLANK, OTHER = 10, 12  # 11 is the minus sign
 
 #: A digit, or an emptiness, of at least this confidence is taken; what is below goes to a person (docs/scans.md: how often it errs).
 CONFIDENT = 0.995
@@ -62,16 +62,6 @@ def read_candidates(
     likeliest = chances[:, : BLANK + 1].argmax(axis=1)
     confidences = chances[np.arange(len(likeliest)), likeliest]
     return np.where(likeliest == BLANK, EMPTY, likeliest), confidences, chances[:, :BLANK]
-
-
-def read_signs(cells: NDArray[np.uint8]) -> tuple[NDArray[np.bool_], NDArray[np.float64]]:
-    """Return True for each box with a minus sign, and the confidence.
-
-    Boxes as for :func:`read_digits`. Low where the box holds neither nothing nor a minus: a plus, an upright stroke.
-    """
-    chances = probabilities(prepared(cells))
-    present = chances[:, MINUS] > chances[:, BLANK]
-    return present, np.where(present, chances[:, MINUS], chances[:, BLANK])
 
 
 def prepared(cells: NDArray[np.uint8]) -> Floats:

@@ -13,7 +13,7 @@ from tables import each_row
 
 from coursework.errors import CannotAssemble, Undefined
 from coursework.kinematics import dyads
-from coursework.kinematics.angles import heading_in_degrees
+from coursework.kinematics.angles import Degrees
 from coursework.kinematics.vectors import components, cross, direction, turned
 
 EPS = 2.0**-52
@@ -87,7 +87,7 @@ def test_a_horizontal_line_is_its_ordinate_and_the_guide_may_be_steep():
     assert dyads.rrp(0j, 5.0, 3.0) == 4 + 3j
     assert dyads.rrp(0j, 5.0, 3.0, -1) == -4 + 3j
     # A guide 0.05 degrees off the vertical: the same mechanism turned gives the same mechanism turned.
-    turn = heading_in_degrees(89.95)
+    turn = Degrees(89.95)
     along = complex(turn.cos, turn.sin)
     assert abs(dyads.rrp(0j, 5.0, 3j * along, 1, along) - (4 + 3j) * along) < 8 * EPS * 5
     with pytest.raises(CannotAssemble, match=r"gap 1\)"):
@@ -172,51 +172,6 @@ def test_rates_of_rrr_are_derivatives(side):
     check([moved], at)
 
 
-@each_row("side", [1, -1])
-def test_rates_of_rrp_on_a_moving_line_are_derivatives(side):
-    along, through = unit(PSI[0]), 2 + 3j
-    line = (through, *Q[1:])
-    joint = dyads.rrp(P[0], 5.0, through, side, along)
-    slide = (np.conj(along) * (joint - through)).real
-    rates = dyads.rrp_rates(joint - P[0], along, P[1:], line[1:], slide, PSI[1:])
-    p, g, psi = path(P), path(line), path(PSI)
-
-    def slid(t):
-        u = mp.expj(psi(t))
-        w = mp.conj(u) * (p(t) - g(t))
-        return w.real + side * mp.sqrt(25 - w.imag**2)
-
-    check(rates, lambda t: mp.arg(g(t) + slid(t) * mp.expj(psi(t)) - p(t)), slid)
-
-
-@each_row("offset", [0.0, 1.5])
-def test_rates_of_rpr_are_derivatives_with_coriolis(offset):
-    along, _ = dyads.rpr(P[0], Q[0], offset)
-    rates = dyads.rpr_rates(P[0] - Q[0], along, P[1:], Q[1:])
-    p, q = path(P), path(Q)
-    slid = lambda t: mp.sqrt(abs(p(t) - q(t)) ** 2 - mp.mpf(offset) ** 2)  # noqa: E731
-    first = mp.arg((p(mp.mpf(0)) - q(mp.mpf(0))) / (slid(mp.mpf(0)) + 1j * mp.mpf(offset)))
-    check(rates, slid, lambda t: mp.arg((p(t) - q(t)) / (slid(t) + 1j * mp.mpf(offset)) / mp.expj(first)))
-
-
-def test_rates_of_prp_and_rpp_on_moving_lines_are_derivatives():
-    one, other = unit(PSI[0]), unit(PSI[0] + 1.1)
-    p, q, psi = path(P), path(Q), path(PSI)
-    pin = dyads.prp(P[0], one, Q[0], other)
-    slides = (np.conj(one) * (pin - P[0])).real, (np.conj(other) * (pin - Q[0])).real
-    rates = dyads.prp_rates(one, other, P[1:], Q[1:], slides, (PSI[1:], PSI[1:]))
-
-    def parts(t, between):
-        u, v = mp.expj(psi(t)), mp.expj(psi(t) + mp.mpf(1.1))
-        area = (mp.conj(u) * v).imag
-        return (mp.conj(between) * v).imag / area, (mp.conj(u) * between).imag / area
-
-    check(rates, lambda t: parts(t, q(t) - p(t))[0], lambda t: -parts(t, q(t) - p(t))[1])
-    slides = dyads.rpp(P[0], Q[0], one, other)
-    rates = dyads.rpp_rates(one, other, P[1:], Q[1:], slides, PSI[1:])
-    check(rates, lambda t: parts(t, p(t) - q(t))[0], lambda t: parts(t, p(t) - q(t))[1])
-
-
 def test_only_the_orders_given_are_computed():
     joint = dyads.rrr(P[0], Q[0], 5.0, 4.0)
     whole = dyads.rrr_rates(joint - P[0], joint - Q[0], P[1:], Q[1:])
@@ -233,7 +188,7 @@ def test_rates_at_a_dead_point_do_not_exist():
 
 
 def test_drivers():
-    assert dyads.rotating(1 + 1j, 2.0, heading_in_degrees(90)) == 1 + 3j
+    assert dyads.rotating(1 + 1j, 2.0, Degrees(90)) == 1 + 3j
     assert dyads.sliding(1 + 1j, 1j, 2.0) == 1 + 3j
 
 

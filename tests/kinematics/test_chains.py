@@ -8,7 +8,7 @@ from reference import mp
 from tables import each_row
 
 from coursework.errors import CannotAssemble, Undefined, WrongValue
-from coursework.kinematics.angles import heading_in_degrees
+from coursework.kinematics.angles import Degrees
 from coursework.kinematics.chains import ClosedChain, Vector
 from coursework.kinematics.four_bar import FourBar
 from coursework.system.blocks import BLOCK, in_blocks
@@ -64,7 +64,7 @@ def test_rates_of_a_chain_are_those_of_the_closed_form():
 
 
 def test_the_start_chooses_the_assembly():
-    crossed = FOUR_BAR.solve(LENGTHS | {"crank": heading_in_degrees(60)}, {"coupler": -1.0, "rocker": -1.5})
+    crossed = FOUR_BAR.solve(LENGTHS | {"crank": Degrees(60)}, {"coupler": -1.0, "rocker": -1.5})
     assert list(crossed.values.values()) == pytest.approx(
         FourBar(100, 40, 80, 70, "crossed").angles(math.pi / 3), abs=1e-14
     )
@@ -139,9 +139,9 @@ def test_a_dead_point_shows_in_the_condition_and_has_no_rates():
     start = dict(zip(("coupler", "rocker"), rocker.angles(crank), strict=True))
     pose = FOUR_BAR.solve({"d": 90.0, "a": 70.0, "b": 40.0, "c": 50.0, "crank": crank}, start)
     assert 0.1 < pose.condition / rocker.conditioning(crank) < 10
-    square = {"d": 4.0, "a": 1.0, "b": 1.0, "c": 2.0, "crank": heading_in_degrees(0), "coupler": 0.0}
+    square = {"d": 4.0, "a": 1.0, "b": 1.0, "c": 2.0, "crank": Degrees(0), "coupler": 0.0}
     with pytest.raises(Undefined, match="dead point"):
-        FOUR_BAR.rates(square | {"rocker": heading_in_degrees(180)}, {"crank": (1.0,)})
+        FOUR_BAR.rates(square | {"rocker": Degrees(180)}, {"crank": (1.0,)})
 
 
 def test_a_chain_that_is_miscounted_is_refused():

@@ -10,7 +10,7 @@ from reference import away, four_bar, mp
 from tables import each_row
 
 from coursework.kinematics import elementary, vectors
-from coursework.kinematics.angles import heading_in_degrees
+from coursework.kinematics.angles import Degrees
 from coursework.kinematics.elementary import quotient_arctangent, tangent
 from coursework.kinematics.four_bar import FourBar
 from coursework.kinematics.vectors import direction_of
@@ -81,7 +81,7 @@ def test_a_linkage_keeps_its_digits_whichever_arctangent_the_processor_takes(
 ):
     monkeypatch.setattr(vectors, "arctangent", arctangent)
     turn = np.concatenate([np.linspace(-180, 180, 91), [1e-9, -1e-9, 180 - 1e-9]])
-    coupler, rocker = FourBar(*lengths).angles(heading_in_degrees(turn))
+    coupler, rocker = FourBar(*lengths).angles(Degrees(turn))
     for angle, one, other in zip(turn, coupler, rocker, strict=True):
         exact = four_bar(*lengths, angle, radians=False)
         assert away(one, exact[0]) <= 8 * EPS

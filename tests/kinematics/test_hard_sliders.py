@@ -11,7 +11,7 @@ from tables import each_row
 
 from coursework.errors import CannotAssemble, Undefined, WrongValue
 from coursework.kinematics import slotted_guide
-from coursework.kinematics.angles import heading_in_degrees
+from coursework.kinematics.angles import Degrees
 from coursework.kinematics.slider_crank import SliderCrank, time_ratio, time_ratio_excess
 
 EPS = 2.0**-52
@@ -29,7 +29,7 @@ def test_a_rod_as_long_as_its_crank_gives_twice_the_cosine(near):
 
 
 def test_the_smooth_policy_at_equal_lengths_moves_as_twice_the_cosine_through_every_angle():
-    turned = heading_in_degrees(np.arange(0.0, 720.0, 15.0))
+    turned = Degrees(np.arange(0.0, 720.0, 15.0))
     found = SliderCrank(1.0, 1.0, smooth=True).motion(turned, 1.0, order=3)
     for quantity, expected in (
         (found.position, 2 * turned.cos),
@@ -39,12 +39,12 @@ def test_the_smooth_policy_at_equal_lengths_moves_as_twice_the_cosine_through_ev
     ):
         assert abs(quantity - expected).max() < 8 * EPS
     with pytest.raises(Undefined, match="square"):
-        SliderCrank(1.0, 1.0).motion(heading_in_degrees(90), order=1)
+        SliderCrank(1.0, 1.0).motion(Degrees(90), order=1)
 
 
 @each_row("step", [1.0, 7.0, 179.0])
 def test_a_rod_longer_than_its_crank_never_changes_side(step):
-    turned = heading_in_degrees(np.arange(0, 720) * step)
+    turned = Degrees(np.arange(0, 720) * step)
     for side in (1, -1):
         for smooth in (False, True):
             run = SliderCrank(1.0, 1.0001, 0.0, side, smooth=smooth).position(turned) - turned.cos
@@ -116,7 +116,7 @@ def test_lengths_of_many_digits_have_exact_margins_too(beyond):
 
 def test_a_slider_that_does_not_reach_says_by_how_much_and_is_nan_in_arrays():
     with pytest.raises(CannotAssemble, match=r"gap 0\.5"):
-        SliderCrank(1.0, 0.5).position(heading_in_degrees(90))
+        SliderCrank(1.0, 0.5).position(Degrees(90))
     theta = np.linspace(-3, 3, 401)
     motion = SliderCrank(1.0, 0.5, 0.1).motion(theta, order=3)
     beyond = abs(np.sin(theta) - 0.1) > 0.5
@@ -173,10 +173,10 @@ def test_a_guide_whose_crank_equals_its_ground_turns_at_half_the_rate(theta):
 
 def test_a_guide_with_the_pin_on_its_pivot_is_undefined():
     with pytest.raises(Undefined, match="pivot"):
-        slotted_guide.motion(0.3, 0.3, heading_in_degrees(180), order=0)
-    found = slotted_guide.motion(0.3, 0.3, heading_in_degrees(np.array([179.0, 180.0])), order=0)
+        slotted_guide.motion(0.3, 0.3, Degrees(180), order=0)
+    found = slotted_guide.motion(0.3, 0.3, Degrees(np.array([179.0, 180.0])), order=0)
     assert np.array_equal(np.isnan(found.guide_angle), [False, True])
-    rates = slotted_guide.motion(0.3, 0.3, heading_in_degrees(np.array([179.0, 180.0])), 1.0, order=1)
+    rates = slotted_guide.motion(0.3, 0.3, Degrees(np.array([179.0, 180.0])), 1.0, order=1)
     assert rates.guide_rate.tolist() == [0.5, 0.5]
 
 
@@ -184,10 +184,7 @@ def test_the_peak_of_a_whitworth_guide_is_a_quotient_of_lengths():
     d = 0.2
     r = d * (1 + 1e-9)
     expected = mp.mpf(r) / (mp.mpf(r) - mp.mpf(d))
-    assert (
-        relative(slotted_guide.motion(d, r, heading_in_degrees(180), 1.0, order=1).guide_rate, expected)
-        < 4 * EPS
-    )
+    assert relative(slotted_guide.motion(d, r, Degrees(180), 1.0, order=1).guide_rate, expected) < 4 * EPS
 
 
 @each_row(("ground", "crank", "turns"), [(1.0, 1.5, 1), (1.0, 0.7, 0)])
@@ -248,7 +245,7 @@ def guide_at(d, r, angle):
 @each_row("side", [1, -1])
 def test_a_pin_that_passes_beside_the_pivot_costs_no_digit_of_any_order(gap, near, side):
     d, r, angle = 200.0, 200.0 * (1 + gap), 180.0 - side * near
-    found = slotted_guide.motion(d, r, heading_in_degrees(angle), order=3)
+    found = slotted_guide.motion(d, r, Degrees(angle), order=3)
     arm, *derivatives = guide_at(d, r, angle)
     assert relative(found.arm, arm) < 4 * EPS
     for order, pair in enumerate(derivatives, 1):
@@ -261,7 +258,7 @@ def test_a_pin_that_passes_beside_the_pivot_costs_no_digit_of_any_order(gap, nea
 @each_row("near", [1e-2, 1e-6, 1e-10])
 def test_the_rod_of_a_slider_gains_speed_evenly_on_both_sides_of_a_dead_centre(offset, near):
     for crank in (near, -near, 180 - near):
-        found = SliderCrank(1.0, 2.5, offset).motion(heading_in_degrees(crank), 1.0, 0.0, order=2)
+        found = SliderCrank(1.0, 2.5, offset).motion(Degrees(crank), 1.0, 0.0, order=2)
         with mp.workdps(60):
             r, l, e = exact(1.0, 2.5, offset)
             s = mp.sinpi(mp.mpf(crank) / 180)

@@ -9,7 +9,7 @@ from scipy.signal import correlate2d
 from tables import each_row
 
 from coursework.scanning import digits
-from coursework.scanning.digits import CONFIDENT, EMPTY, read_digits, read_signs
+from coursework.scanning.digits import CONFIDENT, EMPTY, read_digits
 
 #: Forty of each digit, of MNIST's test set.
 with np.load(
@@ -147,35 +147,8 @@ def test_a_letter_is_told_unsure(letter):
     assert read_digits(cell[None])[1][0] < CONFIDENT
 
 
-MINUSES = [[(18, 45), (52, 44)], [(14, 50), (48, 44)], [(24, 38), (44, 39)]]
-NO_MINUSES = {
-    "plus": [[(18, 45), (52, 45)], [(35, 28), (35, 62)]],
-    "upright": [[(35, 16), (36, 74)]],
-    "cross": [[(14, 20), (56, 70)], [(56, 20), (14, 70)]],
-    "equals": [[(18, 38), (52, 38)], [(18, 54), (52, 54)]],
-}
-
-
-@each_row("stroke", MINUSES)
-def test_a_minus_is_read(stroke):
-    present, sure = read_signs(np.array([inked(box(), stroked(stroke, width=w)) for w in (3, 5, 7)]))
-    assert present.all()
-    assert np.all(sure >= CONFIDENT)
-
-
-def test_no_sign_is_read_as_none():
-    present, sure = read_signs(box()[None])
-    assert not present[0]
-    assert sure[0] >= CONFIDENT
-
-
-@each_row("name", NO_MINUSES)
-def test_what_is_no_minus_is_told_unsure(name):
-    assert read_signs(inked(box(), stroked(*NO_MINUSES[name]))[None])[1][0] < CONFIDENT
-
-
 def test_a_minus_is_no_digit():
-    assert read_digits(inked(box(), stroked(MINUSES[0]))[None])[1][0] < CONFIDENT
+    assert read_digits(inked(box(), stroked([(18, 45), (52, 44)]))[None])[1][0] < CONFIDENT
 
 
 def test_a_box_is_read_alike_alone_and_among_others():
