@@ -86,7 +86,11 @@ def _several(name: str, metavar: str, **more: Any) -> Callable[[Any], Any]:
 )
 @click.option("--cards", is_flag=True, help="List the answers that wait, question by question.")
 @click.option(
-    "--undo", is_flag=True, help="Take the last of these decisions back; with --put-away what was put away."
+    "--undo",
+    is_flag=False,
+    flag_value="last",
+    metavar="[ID…]",
+    help="Take decisions back, by the ids that stand before them, or the last; with --put-away what was put away.",
 )
 @click.option(
     "--undo-since",
@@ -107,7 +111,7 @@ def after(
     marks: Path | None,
     db: str | None,
     assignment: str,
-    undo: bool,
+    undo: str | None,
     undo_since: str | None,
     put_away: bool,
     cards: bool,
@@ -123,7 +127,7 @@ def after(
 
     Without a change it lists the waiting answers, patterns that a person should look at, and every question with a proposal. A
     change is previewed: who goes from which mark to which. --yes confirms it: it is a dated line of decisions.csv, or of the database,
-    that every later grade applies, and --undo or --undo-since takes it back.
+    that every later grade applies, and --undo or --undo-since takes it back, whatever was decided since.
     """
     from coursework.gradebook.after import restated as restated_of
     from coursework.gradebook.after import undoing
@@ -142,11 +146,9 @@ def after(
     if restated:
         texts = words(language_of_messages())["after"]
         steps += [step._replace(reason=why or texts["file_why"], by=by) for step in changed.steps]
-    if put_away and undo:
-        steps += exam.taken_back(by, [words(lang)["after"]["put_away_why"] for lang in languages()])
-    elif put_away:
+    if put_away and undo is None:
         steps += exam.put_away(by, why or words(language_of_messages())["after"]["put_away_why"])
-    undone = () if put_away else _undone(exam, undo, undo_since)
+    undone = _undone(exam, undo, undo_since, put_away=put_away)
     steps += undoing(undone, by, why)
     if put_away and not steps:
         say("no answer that waits says nothing")
@@ -270,13 +272,17 @@ def _steps(exam: Exam, asked: Mapping[str, Any]) -> Iterator[Decision]:
         yield step(kinds.CURVE, answer=asked["curve"])
 
 
-def _undone(exam: Exam, undo: bool, since: str | None) -> Sequence[Decision]:
-    """Return the standing steps that the options take back, in their order."""
+def _undone(exam: Exam, undo: str | None, since: str | None, *, put_away: bool) -> Sequence[Decision]:
+    """Return the standing decisions that the options take back, in their order."""
     from coursework.gradebook.after import steps_since
 
-    if not undo and since is None:
+    if undo is None and (since is None or put_away):
         return ()
+    if put_away:
+        return exam.put_aside
     standing: Sequence[Decision] = exam.decisions.standing_steps
+    if since is None and undo != "last":
+        return exam.undoable((undo or "").replace(",", " ").split())
     if since is None:
         standing = standing[-1:]
     elif since != "all":
@@ -408,12 +414,12 @@ def _tell_cards(exam: Exam) -> None:
 
 
 def step_line(exam: Exam, step: Decision, lang: str) -> str:
-    """Return a line on a step: the day, who, what, and why."""
+    """Return a line on a step: its id, the day, who, what, and why."""
     from coursework.gradebook import after_words as said
 
     day = step.made.astimezone().date().isoformat() if step.made else "–"
     line = str(words(lang)["after"]["step_line"]).format(day, step.by, said.step_text(exam, step, lang))
-    return f"{line} ({step.reason})" if step.reason else line
+    return f"{step.id}  {line} ({step.reason})" if step.reason else f"{step.id}  {line}"
 
 
 def _question_row(question: Any, texts: Any, lang: str) -> dict[str, Any]:
@@ -451,14 +457,17 @@ def _tell_preview(
 
     lang = language_of_messages()
     texts, colon = words(lang)["after"], words(lang)["sheet"]["colon"]
-    own = [step for step in steps if step.student]
-    for step in steps[: len(steps) - len(undone)]:
+    made = steps[: len(steps) - len(undone)]
+    click.echo(texts["preview"])
+    for step in made:
         if not step.student:
             click.echo(one_line(said.step_text(exam, step, lang)))
     for step in reversed(undone):
-        click.echo(one_line(texts["undone"].format(step_line(exam, step, lang))))
-    if own:
-        click.echo(f"{texts['put_away']}{colon} {_named([f'{one.student} ({one.answer})' for one in own])}")
+        if not step.student:
+            click.echo(one_line(texts["to_undo"].format(step_line(exam, step, lang))))
+    for title, among in (("put_away", made), ("back", undone)):
+        if own := [f"{exam.shown(one.student)} ({one.answer})" for one in among if one.student]:
+            click.echo(one_line(f"{texts[title]}{colon} {_named(own)}"))
     changes = preview.changes
     print_table(
         [

@@ -30,6 +30,7 @@ from coursework.gradebook.decisions import (
     Decisions,
     check_points,
 )
+from coursework.gradebook.decision import new_id, with_ids
 from coursework.issuing.students import folded
 
 # ---------------------------------------------------------------------- writing
@@ -57,7 +58,15 @@ def decide(connection: Connection, assignment_id: int, decisions: Iterable[Decis
     _check(connection, assignment_id, [entry for entry in decisions if entry.kind != WITHDRAWN])
     if decisions:
         now = {"assignment_id": assignment_id, "made": datetime.now(UTC)}
-        rows = [{**dict(zip(_STORED, entry, strict=False)), **now} for entry in decisions]
+        rows = [
+            {
+                **dict(zip(_STORED, entry, strict=False)),
+                "lasting_id": entry.id or new_id(),
+                "withdraws": entry.withdraws or None,
+                **now,
+            }
+            for entry in decisions
+        ]
         connection.execute(insert(decision), rows)
 
 
@@ -95,7 +104,8 @@ _STORED = Decision._fields[: Decision._fields.index("line")]  #: fields of a dec
 
 def stored_decision(row: Any) -> Decision:
     """Return the decision of a row."""
-    return Decision(*(getattr(row, name) for name in _STORED))
+    stated = (getattr(row, name) for name in _STORED)
+    return Decision(*stated, id=row.lasting_id or "", withdraws=row.withdraws or "")
 
 
 def read_decisions(connection: Connection, assignment_id: int, student: str | None = None) -> Decisions:
@@ -170,13 +180,13 @@ def store_new_decisions(connection: Connection, assignment_id: int, files: Decis
         An answer is given more points than its part has.
     """
     remembered = [entry for path in files.files for entry in _remembered(connection, assignment_id, path)]
-    known = Counter(entry[:_STATED] for entry in remembered if not entry.student)
+    known = Counter(_line(entry) for entry in remembered if not entry.student)
     new_steps = []
     for entry in files.lines:
         if not entry.student:
-            known[entry[:_STATED]] -= 1
-            new_steps += [entry] if known[entry[:_STATED]] < 0 else []
-    gone = [entry for entry in remembered if known[entry[:_STATED]] > 0 and entry.kind != WITHDRAWN]
+            known[_line(entry)] -= 1
+            new_steps += [entry] if known[_line(entry)] < 0 else []
+    gone = [entry for entry in remembered if known[_line(entry)] > 0 and entry.kind != WITHDRAWN]
     taken_back = [step.withdrawn() for step in gone]
     decide(connection, assignment_id, [*taken_back, *new_steps])
     was = _by_answer(entry for entry in remembered if entry.student)
@@ -187,7 +197,7 @@ def store_new_decisions(connection: Connection, assignment_id: int, files: Decis
     for on in changed:
         standing = decisions.on(*on)
         if on in was and standing and standing[-1].by in names and standing[-1].kind != WITHDRAWN:
-            _store_decision(connection, assignment_id, was[on][-1].withdrawn(seed=""))
+            _store_decision(connection, assignment_id, was[on][-1].withdrawn(seed="", withdraws=""))
         for entry in now.get(on, ()):
             _store_decision(connection, assignment_id, entry)
     remember_written(connection, assignment_id, files)
@@ -198,13 +208,17 @@ def remember_written(connection: Connection, assignment_id: int, files: Decision
     """Record the content of the files, so that it counts as known."""
     for path, decisions in files.files.items():
         key = {"assignment_id": assignment_id, "file": _file(path)}
-        lines = [list(entry[:_STATED]) for entry in decisions if entry.kind != EDITED]
-        if lines != [list(entry[:_STATED]) for entry in _remembered(connection, assignment_id, path)]:
+        lines = [_line(entry) for entry in decisions if entry.kind != EDITED]
+        if lines != [_line(entry) for entry in _remembered(connection, assignment_id, path)]:
             connection.execute(delete(worksheet).filter_by(**key))
             connection.execute(insert(worksheet).values(lines=lines, **key))
 
 
-_STATED = Decision._fields.index("made")  #: fields of a decision that a worksheet has
+_STATED = Decision._fields.index("made")  #: fields of a decision that a worksheet has, and its ids
+
+
+def _line(entry: Decision) -> tuple[Any, ...]:
+    return *entry[:_STATED], entry.id, entry.withdraws
 
 
 def _store_decision(connection: Connection, assignment_id: int, entry: Decision) -> None:
@@ -228,4 +242,6 @@ def _remembered(connection: Connection, assignment_id: int, path: Path) -> list[
     query = select(worksheet.c.lines).where(
         worksheet.c.assignment_id == assignment_id, worksheet.c.file == _file(path)
     )
-    return [Decision(*line) for line in connection.execute(query).scalar() or ()]
+    lines = connection.execute(query).scalar() or ()
+    ids = (dict(zip(("id", "withdraws"), line[_STATED:], strict=False)) for line in lines)
+    return with_ids(Decision(*line[:_STATED], **its) for line, its in zip(lines, ids, strict=True))

@@ -355,6 +355,8 @@ decision = Table(
     Column("answer", SafeText),
     Column("by", SafeText, nullable=False),  #: person, or file that states it
     Column("made", UTCDateTime, nullable=False),
+    Column("lasting_id", SafeText),  #: name that files and withdrawals use; none before there were such names
+    Column("withdraws", SafeText),  #: of a withdrawal, the name of what it takes back
 )
 
 #: Placing of a rejected row by a person: as a submission of its own, or put aside. ``row`` is its digest.

@@ -16,6 +16,7 @@ from typing import Any, NamedTuple
 from coursework.course.course import Course
 from coursework.gradebook.adjustments import NEUTRAL, SPARED, STEP, WEIGHT, Adjustments, Question
 from coursework.gradebook.book import Gradebook, Result, Sitting, results
+from coursework.gradebook.decision import new_id
 from coursework.gradebook.decisions import ACCEPTED, GIVEN, WITHDRAWN, Decision, Decisions, check_steps
 from coursework.gradebook.graded_sheet import Graded
 from coursework.gradebook.presence import ABSENT, EXCUSED, PRESENT
@@ -39,12 +40,15 @@ from coursework.issuing.assignment import Assignment
 from coursework.issuing.issued import Issued
 from coursework.issuing.students import folded
 from coursework.issuing.variant_assignment import with_points
+from coursework.language.words import languages, words
 from coursework.marking.mark import WAITING, Mark
 from coursework.messages import Message
 from coursework.parsing.spoken import refers_elsewhere, says_nothing
 
 _SLASH = re.compile(r"[^/]*[0-9][^/]*/[^/]*[0-9][^/]*")
 _SHARED = 0.5  #: of the answers to a question, from which one wrong answer may be right after all
+_BEYOND_CHANCE = 1.64  #: standard errors of a correlation, beyond which one time in twenty is chance
+_ALMOST_ALL = 0.9  #: mean from which a question can tell few apart
 _NOBODY = 0.02  #: mean share of the points up to which nobody got a question
 BINS = 10  #: of the distribution of marks
 
@@ -283,8 +287,14 @@ class Exam:
         asked = self.course[exercise].spec.part(part)
         return asked is not None and asked.sort.is_number
 
+    def count_of(self, wanted: Decision) -> int:
+        """Return the number of answers to the question of a step that are written as it says."""
+        lines = (g.lines.get(wanted.part) for g in self.machine if g.exercise == wanted.exercise)
+        return sum(line is not None and wanted.is_on(line) for line in lines)
+
     def put_away(self, by: str, reason: str) -> list[Decision]:
-        """Return the decisions that give no points to all non-answers."""
+        """Return the decisions that give no points to all non-answers, as one stroke."""
+        stroke = new_id()
         return [
             Decision(
                 one.student,
@@ -296,6 +306,7 @@ class Exam:
                 reason,
                 one.mark.answer,
                 by,
+                id=stroke,
             )
             for one in self.non_answers
         ]
@@ -310,10 +321,23 @@ class Exam:
         )
         return [step(GIVEN, *question, points=0.0, answer=answer) for answer in answers]
 
-    def taken_back(self, by: str, reasons: Iterable[str]) -> list[Decision]:
-        """Return the decisions that take back those that put non-answers away, for one of these reasons."""
-        given = [one for one in self.decisions.own if one.kind == GIVEN and one.reason in {*reasons}]
-        return [one._replace(kind=WITHDRAWN, points=None, reason="", by=by) for one in given]
+    @cached_property
+    def put_aside(self) -> list[Decision]:
+        """Decisions that put non-answers away, and stand."""
+        return self.decisions.put_aside(words(lang)["after"]["put_away_why"] for lang in languages())
+
+    def undoable(self, ids: Iterable[str]) -> list[Decision]:
+        """Return the standing decisions of some ids, in their order.
+
+        Raises
+        ------
+        BadInput
+            One of them does not stand.
+        """
+        found = {id(one) for name in ids for one in self.decisions.called(name)}
+        return [
+            one for one in (*self.decisions.standing_steps, *self.decisions.own) if id(one) in found
+        ]
 
     @cached_property
     def patterns(self) -> list[SuspiciousPattern]:
@@ -386,10 +410,10 @@ class Exam:
             if shared := self._shared_answer(question):
                 return "shared", step(ACCEPTED, *question, answer=shared)
             return "nobody", step(NEUTRAL, *question)
-        discrimination = statistics.discrimination
-        if discrimination is not None and discrimination < 0:
+        discrimination, enough = statistics.discrimination, max(statistics.marked, 1) ** 0.5
+        if discrimination is not None and discrimination * enough < -_BEYOND_CHANCE:
             return "reversed", step(SPARED, *question)
-        if discrimination is not None and discrimination < WEAK:
+        if discrimination is not None and discrimination < WEAK and statistics.mean < _ALMOST_ALL:
             return "weak", None
         return "", None
 
@@ -436,15 +460,14 @@ def step(
     by: str = "",
 ) -> Decision:
     """Return a step: a decision on no single student, as of now."""
-    return Decision("", exercise, "", part, kind, points, reason, answer, by, datetime.now(UTC))
+    now = datetime.now(UTC)
+    return Decision("", exercise, "", part, kind, points, reason, answer, by, now, id=new_id())
 
 
 def undoing(steps: Sequence[Decision], by: str, reason: str = "") -> list[Decision]:
-    """Return the steps that take the last steps back, the last first: a withdrawal is of the last one on its place."""
-    now = datetime.now(UTC)
-    return [
-        one.withdrawn(by=by, made=now, line=0, location="")._replace(reason=reason) for one in reversed(steps)
-    ]
+    """Return what takes decisions back, the last first."""
+    more = {"by": by, "made": datetime.now(UTC), "line": 0, "location": "", "reason": reason}
+    return [one.withdrawn(**more) for one in reversed(steps)]
 
 
 def steps_since(steps: Sequence[Decision], day: date) -> Sequence[Decision]:

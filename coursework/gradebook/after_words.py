@@ -2,11 +2,16 @@
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 from coursework.gradebook.adjustments import PRICE
 from coursework.gradebook.after import Distribution, Exam, ExamQuestion
 from coursework.gradebook.decisions import WITHDRAWN, Decision
+from coursework.gradebook.statistics.captions import Names
 from coursework.language.numbers import localise
 from coursework.language.words import words
+
+_LONGEST = 70  #: characters of an error in words
 
 
 def number(value: float, lang: str, digits: int = 4) -> str:
@@ -20,9 +25,27 @@ def step_text(exam: Exam, step: Decision, lang: str) -> str:
     if step.kind == WITHDRAWN:
         return str(texts["undone"]).format(_place(exam, step, lang))
     points = (step.points or 0.0) * (100 if step.kind == PRICE else 1)
+    answer = error_text(exam, step.exercise, step.answer or "", lang) if step.kind == PRICE else step.answer
     return str(texts["kinds"][step.kind]).format(
-        question=_place(exam, step, lang), points=number(points, lang, 6), answer=step.answer or ""
+        question=_place(exam, step, lang), points=number(points, lang, 6), answer=answer or ""
     )
+
+
+class _Error(NamedTuple):
+    exercise: str
+    kind: str
+    name: str
+
+
+def error_text(exam: Exam, exercise: str, verdict: str, lang: str) -> str:
+    """Return an error in words: its family, such as a slip, and what was done."""
+    family, _, name = verdict.partition(":")
+    told = str(words(lang)["after"]["errors"].get(family, family))
+    if not name:
+        return told
+    asked = [exercise] if exercise else exam.issued.exercises
+    says = (Names(exam.course, None, lang).mistake(_Error(one, family, name), _LONGEST) for one in asked)
+    return f"{told}{words(lang)['sheet']['colon']} {next((text for text in says if text != name), name)}"
 
 
 def _place(exam: Exam, step: Decision, lang: str) -> str:

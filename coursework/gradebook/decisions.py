@@ -9,6 +9,7 @@ from __future__ import annotations
 import difflib
 import math
 import re
+from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from datetime import datetime
@@ -28,7 +29,7 @@ from coursework.gradebook.decision import TO_MARK as TO_MARK
 from coursework.gradebook.decision import WITHDRAWN as WITHDRAWN
 from coursework.gradebook.decision import Decision as Decision
 from coursework.gradebook.decision import check_points as check_points
-from coursework.gradebook.decision import same_answer, same_text
+from coursework.gradebook.decision import in_force, same_answer, with_ids
 from coursework.gradebook.graded_sheet import Graded
 from coursework.gradebook.placing import UnplacedError, name_hint, sheet_of_row
 from coursework.gradebook.rows import AnswerRow
@@ -43,10 +44,12 @@ DECISIONS_FILE = "decisions.csv"
 DECISION_COLUMNS = (
     "student", "exercise", "seed", "part", "answer", "kind", "points", "out_of", "reason",
 )  # fmt: skip
-STEP_COLUMNS = ("by", "date")  #: more columns where a line is a step, on no single student
+STEP_COLUMNS = ("by", "date", "id", "withdraws")  #: more columns where a line is a step, or has an id
 TO_MARK_FILE, ACCEPTED_FILE, EDITED_FILE = "to_mark.csv", "accepted.csv", "by_hand.csv"  #: of before
 _NEEDED = ("student", "exercise", "part")
 _OPTIONAL = ("seed", "points", "reason", "kind")
+_LONGEST_ID = 40
+_SHOWN = 12  #: ids in a message
 _ALIKE = 0.75  #: of two column names, beyond which one is the other with a typing error
 
 
@@ -57,7 +60,7 @@ class Decisions:
     def __init__(self, decisions: Iterable[Decision] = ()):
         self._of: dict[tuple[str, str, str], list[Decision]] = {}
         self.steps: list[Decision] = []  #: on no single student, in their order, those taken back included
-        for decision in decisions:
+        for decision in with_ids(decisions):
             if decision.student:
                 self._of.setdefault(decision.key, []).append(decision)
             else:
@@ -69,16 +72,54 @@ class Decisions:
 
     @cached_property
     def standing_steps(self) -> tuple[Decision, ...]:
-        """Steps that are not taken back: a withdrawal takes back the last one on the same place."""
+        """Steps that are not taken back: a withdrawal takes back what it names, or the last one on the same place."""
         standing: list[Decision] = []
+        named = {step.id for step in self.steps}
         for step in self.steps:
             if step.kind != WITHDRAWN:
                 standing.append(step)
-                continue
-            last = next((k for k in reversed(range(len(standing))) if standing[k].place == step.place), None)
-            if last is not None:
-                del standing[last]
+            elif step.withdraws in named:
+                standing = [one for one in standing if one.id != step.withdraws]
+            else:
+                last = next((one for one in reversed(standing) if one.place == step.place), None)
+                standing = [one for one in standing if one is not last]
         return tuple(standing)
+
+    def put_aside(self, reasons: Iterable[str]) -> list[Decision]:
+        """Return the standing decisions that give no points to answers of students, for one of these reasons or several of them
+        at one stroke."""
+        given = [one for one in self._own_in_force if one.kind == GIVEN and not one.points]
+        wanted, strokes = {*reasons}, Counter(one.id for one in given if one.id)
+        return [one for one in given if one.reason in wanted or strokes[one.id] > 1]
+
+    @cached_property
+    def _own_in_force(self) -> list[Decision]:
+        return [one for decisions in self._of.values() for one in in_force(decisions)]
+
+    def called(self, name: str) -> list[Decision]:
+        """Return the standing decisions of an id, or of the only one that begins so; those of one stroke together.
+
+        Raises
+        ------
+        BadInput
+            There are none, since they are taken back or never were, or several ids begin so.
+        """
+        standing = [*self.standing_steps, *self._own_in_force]
+        ids = sorted({one.id for one in standing if one.id.startswith(name) and name})
+        if name in ids or len(ids) == 1:
+            return [one for one in standing if one.id == (name if name in ids else ids[0])]
+        if len(ids) > 1:
+            raise BadInput(
+                "{name!r} begins several decisions: {found}", name=name[:40], found=", ".join(ids[:_SHOWN])
+            )
+        if any(one.id == name for one in (*self.own, *self.steps)):
+            raise BadInput("decision {name} is taken back already", name=name)
+        shown = [step.id for step in self.standing_steps]
+        raise BadInput(
+            "no decision {name!r}; those that stand are {found}",
+            name=name[:40],
+            found=", ".join(shown[-_SHOWN:]) or "–",
+        )
 
     @cached_property
     def adjustments(self) -> Adjustments:
@@ -115,17 +156,12 @@ class Decisions:
         """Yield the decisions on exactly this answer of a sheet, the last first, as far as the last
         withdrawal."""
         student, exercise, seed = sheet
-        for decision in reversed(self.on(student, exercise, line.part)):
-            if decision.seed not in ("", str(seed)):
-                continue
-            if decision.kind == WITHDRAWN:
-                return
+        own = [one for one in self.on(student, exercise, line.part) if one.seed in ("", str(seed))]
+        for decision in reversed(in_force(own)):
             if decision.answer is None or same_answer(decision.answer, line.answer):
                 yield decision
         for step in reversed(self._of_all.get((exercise, line.part), ()) if self.steps else ()):
-            if step.seed in ("", str(seed)) and any(
-                same_text(step.answer or "", text) for text in (line.answer, line.read_as)
-            ):
+            if step.seed in ("", str(seed)) and step.is_on(line):
                 yield step
 
     def apply(self, graded: Graded) -> Graded:
@@ -173,7 +209,9 @@ class DecisionFiles:
         self._own: list[Decision] = self._read(own)
         if accepted is None and folder is not None and (folder / ACCEPTED_FILE).exists():
             accepted = folder / ACCEPTED_FILE
-        self._read(accepted)
+        if accepted is not None:  # what was written before comes first, so that a withdrawal reaches it
+            self._read(accepted)
+            self.files = dict(reversed(self.files.items()))
         self.decisions = Decisions(self.lines)
         self.is_edited = any(decision.kind == EDITED for decision in self._own)
         self.waiting = 0
@@ -201,7 +239,7 @@ class DecisionFiles:
             decision = _decision(location, number, row, more, by=path.name, listed=listed)
             if decision is not None:
                 found.append(decision._replace(student=self._renamed(decision.student)))
-        self.files[path] = found
+        self.files[path] = found = with_ids(found)
         return found
 
     def follow(self, graded: Graded, decisions: Decisions) -> None:
@@ -233,7 +271,7 @@ class DecisionFiles:
         row = _row(
             *graded[:3], mark.part, mark.answer, "", given and given.points, given.reason if given else ""
         )
-        self._rows.append({**row, "out_of": f"{mark.out_of:g}"})
+        self._rows.append({**row, "out_of": f"{mark.out_of:g}"} | _id_cells(given))
 
     @property
     def _unused(self) -> list[Decision]:
@@ -268,7 +306,7 @@ class DecisionFiles:
     @property
     def columns(self) -> tuple[str, ...]:
         """Columns of the new ``decisions.csv``."""
-        has_steps = any(not one.student for one in self._own)
+        has_steps = any(not one.student or one.id for one in self._own)
         return (*DECISION_COLUMNS, *STEP_COLUMNS) if has_steps else DECISION_COLUMNS
 
     def add(self, decisions: Iterable[Decision]) -> None:
@@ -331,11 +369,14 @@ def edited_row(change: Mapping[str, Any]) -> dict[str, Any]:
 def row_of(one: Decision) -> dict[str, Any]:
     """Return the line of ``decisions.csv`` of a decision; of a step with who made it, and the day."""
     row = _row(*one.answer_id, one.answer or "", one.kind, one.points, one.reason)
-    return (
-        row | {"by": one.by, "date": one.made and one.made.astimezone().date().isoformat()}
-        if not one.student
-        else row
-    )
+    row |= _id_cells(one)
+    if not one.student:
+        row |= {"by": one.by, "date": one.made and one.made.astimezone().date().isoformat()}
+    return row
+
+
+def _id_cells(one: Decision | None) -> dict[str, str]:
+    return {} if one is None or not one.id else {"id": one.id, "withdraws": one.withdraws}
 
 
 def _row(
@@ -392,7 +433,7 @@ def _decision(
     seed = re.sub(r"[.,]0+$", "", row.get("seed", ""))  # as spreadsheets write whole numbers
     answer = row.get("answer", "") if listed else row.get("answer") or None if "kind" in row else None
     named = row["student"], row["exercise"], seed, row["part"]
-    return Decision(*named, kind, points, row.get("reason", ""), answer, by, None, number, location)
+    return Decision(*named, kind, points, row.get("reason", ""), answer, by, None, number, location, *_ids(row))
 
 
 def _step(
@@ -409,7 +450,12 @@ def _step(
     seed = re.sub(r"[.,]0+$", "", row.get("seed", ""))
     named = "", row.get("exercise", ""), seed, row.get("part", "")
     answer, by = row.get("answer") or None, row.get("by") or by
-    return Decision(*named, kind, points, row.get("reason", ""), answer, by, made, number, location)
+    return Decision(*named, kind, points, row.get("reason", ""), answer, by, made, number, location, *_ids(row))
+
+
+def _ids(row: Mapping[str, str]) -> tuple[str, str]:
+    """Return the id of a line, and of what it takes back."""
+    return row.get("id", "")[:_LONGEST_ID], row.get("withdraws", "")[:_LONGEST_ID]
 
 
 def check_steps(steps: Iterable[Decision], issued: Issued) -> None:

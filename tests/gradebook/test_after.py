@@ -65,7 +65,7 @@ def test_what_is_left_is_told_with_the_proposal_that_fits(marked, capsys, monkey
     text = capsys.readouterr().out
     assert "Illisibles" in text
     assert "les meilleurs la manquent" in text
-    assert "3 points" in text
+    assert "notée sur 3" in text
 
 
 def test_a_change_is_previewed_confirmed_applied_by_grade_and_undone(marked, capsys):
@@ -94,7 +94,7 @@ def test_a_change_is_previewed_confirmed_applied_by_grade_and_undone(marked, cap
     assert after("--undo-since", "9999-01-01") == after("--undo-since", "yesterday") == 2
     capsys.readouterr()
     assert after("--undo-since", "all") == 0
-    assert re.findall(r"Undone: .*: (2 points|.*bonus|.*9 points)", capsys.readouterr().out)[0] == "2 points"
+    assert re.findall(r"To undo: .*: (2 points|.*bonus|.*of 9)", capsys.readouterr().out)[0] == "2 points"
     assert after("--undo-since", "2000-01-01", "--yes") == 0
     assert "3 decisions taken back" in capsys.readouterr().out
     assert marks_in(folder) == before
@@ -124,3 +124,51 @@ def test_all_that_waits_in_a_question_is_refused_at_one_stroke(marked, capsys):
     capsys.readouterr()
     assert after("--refuse", "1.1", "--yes") == 0
     assert "no answer waits" in capsys.readouterr().out
+
+
+def test_a_change_in_the_middle_is_taken_back_by_its_id(marked, capsys):
+    folder, after = marked
+    before = marks_in(folder)
+    assert after("--weight", "1.1=9", "--full", "2", "--yes") == 0
+    weight, full = (row["id"] for row in table(folder / "decisions.csv"))
+    capsys.readouterr()
+    assert after("--undo", weight[:4], "--why", "no") == 0
+    told = capsys.readouterr().out
+    assert f"To undo: {weight}" in told
+    assert "Undone" not in told
+    assert after("--undo", weight, "--yes") == 0
+    assert [(r["kind"], r["withdraws"]) for r in table(folder / "decisions.csv")][2:] == [("withdrawn", weight)]
+    assert after("--undo", weight) == after("--undo", "zzz") == 2
+    assert re.findall("taken back already|those that stand are .*", capsys.readouterr().err) == [
+        "taken back already",
+        f"those that stand are {full}",
+    ]
+    assert after("--undo", f"{full}", "--yes") == 0
+    assert marks_in(folder) == before
+
+
+def test_decisions_written_without_ids_are_taken_back_too_and_those_of_an_earlier_file(marked, capsys):
+    folder, after = marked
+    before = marks_in(folder)
+    (folder / "accepted.csv").write_text("student,exercise,part,answer\n,crank_pin,x,hm 3 or 4\n", "utf-8")
+    lines = ["kind,points,exercise,part,answer,by", "full,2,,,,Mme Roy", "weight,9,crank_pin,x,,Mme Roy"]
+    (folder / "decisions.csv").write_text("\n".join(lines) + "\n", "utf-8")
+    capsys.readouterr()
+    after()
+    steps = re.findall(r"^  ([a-z]{6})  .*(accepted|best|out of 9)", capsys.readouterr().out, re.MULTILINE)
+    accepted, full, weight = (name for name, _ in steps)
+    assert after("--undo", f"{accepted},{full}", "--yes") == 0
+    assert [row["id"] for row in table(folder / "decisions.csv")][:2] == [full, weight]
+    assert {row["provisional"] for row in table(folder / "summary.csv")} == {"", "1"}
+    assert after("--undo", "--yes") == 0
+    assert marks_in(folder) == before
+
+
+def test_what_was_refused_and_taken_back_is_decided_anew(marked, capsys):
+    folder, after = marked
+    path = folder / "decisions.csv"
+    assert after("--refuse", "1.1", "--yes") == after("--undo", "--yes") == 0
+    assert {row["provisional"] for row in table(folder / "summary.csv")} == {"", "1"}
+    path.write_text(path.read_text("utf-8") + "S10,crank_pin,5,x,,accepted,,,,,,,\n", "utf-8")
+    capsys.readouterr()
+    assert said_by(capsys, after)["provisional"] == {"S11": 1}

@@ -37,13 +37,13 @@ def test_a_change_is_previewed_kept_and_taken_back(desk):
     before = points(desk)
     asked = {"kind": "weight", "question": QUESTION, "points": "9", "why": "announced <b>so</b>"}
     page = desk.page(TEACHER, "/after", **asked)
-    assert "Question 1.1: worth 9 points" in page.text
+    assert "Question 1.1: out of 9" in page.text
     assert "Rise: 3" in page.text
     assert "<b>so" not in page.text
     assert (points(desk), steps_of(desk)) == (before, ())
     browser = desk.browser(TEACHER)
     reply = browser.fill(f"/desk/{desk.number}/after", {"do": "confirm", **asked})
-    assert "Saved. Question 1.1: worth 9 points" in reply.text
+    assert "Saved. Question 1.1: out of 9" in reply.text
     (step,) = steps_of(desk)
     assert (step.student, step.kind, step.points, step.by, step.reason) == (
         "",
@@ -56,7 +56,7 @@ def test_a_change_is_previewed_kept_and_taken_back(desk):
     assert now["Ada"][1] == now["Flo"][1] > before["Ada"][1]
     assert now["Ada"][0] - before["Ada"][0] == now["Ada"][1] - before["Ada"][1]
     assert now["Flo"][0] == before["Flo"][0]
-    browser.fill(f"/desk/{desk.number}/after", {"do": "undo"})
+    browser.fill(f"/desk/{desk.number}/after", {"do": "undo", "undo": step.id})
     assert (points(desk), steps_of(desk)) == (before, ())
 
 
@@ -64,16 +64,21 @@ def test_several_changes_are_taken_back_at_once_unless_others_stand_by_then(desk
     before, browser, path = points(desk), desk.browser(TEACHER), f"/desk/{desk.number}/after"
     for asked in ({"kind": "weight", "points": "9"}, {"kind": "bonus"}, {"kind": "neutral"}):
         browser.fill(path, {"do": "confirm", "question": QUESTION, **asked})
-    page = desk.page(TEACHER, "/after", undo="2")
-    undone = [page.text.index(f"Undone: Question 1.1: {text}") for text in ("neutralised", "a bonus")]
+    weight, bonus, neutral = (one.id for one in steps_of(desk))
+    page = desk.page(TEACHER, "/after", undo=f"{bonus},{neutral}")
+    undone = [page.text.index(f"To undo: Question 1.1: {text}") for text in ("neutralised", "a bonus")]
     assert undone == sorted(undone)
+    assert "Undone" not in page.text
     assert len(steps_of(desk)) == 3
-    for stale in ({"undo": "2", "of": "4"}, {"undo": "4"}, {"undo": "-1"}, {"undo": "x"}):
-        assert "have changed since" in browser.fill(path, {"do": "undo", **stale}).text
+    for stale in ("", "-1", "x", f"{bonus},x"):
+        browser.fill(path, {"do": "undo", "undo": stale})
     assert len(steps_of(desk)) == 3
-    browser.fill(path, {"do": "undo", "undo": "2", "of": "3"})
-    assert [one.kind for one in steps_of(desk)] == ["weight"]
-    browser.fill(path, {"do": "undo", "undo": "1", "of": "1"})
+    browser.fill(path, {"do": "undo", "undo": bonus})  # in the middle
+    assert [one.id for one in steps_of(desk)] == [weight, neutral]
+    assert "is taken back already" in browser.fill(path, {"do": "undo", "undo": f"{bonus},{neutral}"}).text
+    browser.fill(path, {"do": "undo", "undo": neutral})
+    assert points(desk)["Ada"][1] > before["Ada"][1]
+    browser.fill(path, {"do": "undo", "undo": weight})
     assert (points(desk), steps_of(desk)) == (before, ())
 
 
@@ -91,6 +96,9 @@ def test_provisional_marks_are_named_and_left_out_and_non_answers_put_away(desk)
     assert "Put them away" in reply.text
     provisional = [name for name, result in class_now(desk.site, desk.number).results.items() if result.open]
     assert provisional == ["Bo"]
+    assert "put away: 1" in desk.page(TEACHER, "/after").text
+    browser.fill(f"/desk/{desk.number}/after", {"do": "undo", "undo": "away"})
+    assert class_now(desk.site, desk.number).results["Ada"].open
 
 
 def test_a_change_that_makes_no_sense_changes_nothing(desk):
@@ -99,6 +107,7 @@ def test_a_change_that_makes_no_sense_changes_nothing(desk):
         {"kind": "weight", "question": QUESTION, "points": "x"},
         {"kind": "weight", "question": "elsewhere/rA", "points": "2"},
         {"kind": "withdrawn", "question": QUESTION},
+        {"kind": "neutral", "question": ""},
         {"kind": "price", "question": QUESTION, "points": "3", "answer": "slip"},
         {"kind": "curve", "answer": "5:1 2:9"},
     ):
@@ -120,7 +129,7 @@ def test_nothing_waits_in_a_question_that_counts_for_nobody(desk):
     browser.fill(f"/desk/{desk.number}/after", {"do": "confirm", **asked})
     assert class_now(desk.site, desk.number).waiting == before - 2
     assert {entry.group.part for entry in class_now(desk.site, desk.number).open.values()} == {"rA"}
-    browser.fill(f"/desk/{desk.number}/after", {"do": "undo"})
+    browser.fill(f"/desk/{desk.number}/after", {"do": "undo", "undo": steps_of(desk)[0].id})
     assert class_now(desk.site, desk.number).waiting == before
 
 

@@ -10,7 +10,7 @@ from coursework.course.course import Course
 from coursework.course.error_values import TAKEN
 from coursework.course.exercise import ALL, CourseExercise
 from coursework.errors import CourseworkError
-from coursework.gradebook.statistics.measures import MistakeStatistics, PartStatistics, Statistics
+from coursework.gradebook.statistics.measures import PartStatistics, Statistics
 from coursework.language.words import words
 from coursework.markup.markdown import plain_line
 from coursework.model import Part
@@ -30,14 +30,27 @@ class ReportedQuestion(Protocol):
     def part(self) -> str: ...
 
 
+class ReportedError(Protocol):
+    """Error by its exercise, its family and its name."""
+
+    @property
+    def exercise(self) -> str: ...
+
+    @property
+    def kind(self) -> str: ...
+
+    @property
+    def name(self) -> str: ...
+
+
 class Names:
     """Names of one report; a name unknown to the course stays as in the marks."""
 
-    def __init__(self, course: Course, statistics: Statistics, lang: str) -> None:
+    def __init__(self, course: Course, statistics: Statistics | None, lang: str) -> None:
         self._course = course
         self._lang = lang
         self._marked: dict[str, set[str]] = {}
-        for part in statistics.parts:
+        for part in statistics.parts if statistics else ():
             self._marked.setdefault(part.exercise, set()).add(part.part)
         self._texts: dict[str, list[Mapping[str, Any]]] = {}
 
@@ -85,7 +98,7 @@ class Names:
 
     # ---------------------------------------------------------------- mistakes
 
-    def says(self, item: MistakeStatistics) -> str:
+    def says(self, item: ReportedError) -> str:
         """Return the message for a mistake or a slip, as plain text; words that vary become an ellipsis, and
         an unknown message is empty."""
         if item.kind == "slip":
@@ -93,18 +106,18 @@ class Names:
         wording = [plain_line(text, self._lang) for text in self._messages(item)]
         return _common(wording) if wording else ""
 
-    def says_markdown(self, item: MistakeStatistics) -> str:
+    def says_markdown(self, item: ReportedError) -> str:
         """Return the message with its formulas, if it is the same for all; otherwise an empty text."""
         text = set(self._messages(item))
         return " ".join(text.pop().split()) if len(text) == 1 else ""
 
-    def mistake(self, item: MistakeStatistics, most: int = SHORT) -> str:
+    def mistake(self, item: ReportedError, most: int = SHORT) -> str:
         """Return the first sentence of the message for a mistake, shortened; its own name where there is no
         message."""
         first = re.split(r"(?<=[.?!])\s", self.says(item), maxsplit=1)[0]
         return shortened(first.removesuffix("."), most) or item.name
 
-    def _messages(self, item: MistakeStatistics) -> list[str]:
+    def _messages(self, item: ReportedError) -> list[str]:
         """Return the message for a mistake on two variants, Markdown."""
         if item.kind == "slip":
             return []

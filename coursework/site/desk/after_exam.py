@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Mapping, Sequence
 from typing import Any
 
@@ -18,6 +19,7 @@ from coursework.gradebook.adjustments import (
     FULL,
     ON_SCALE,
     PRICE,
+    PRICED,
     STEP,
     TOLERANCE,
     WEIGHT,
@@ -37,8 +39,10 @@ OFFERED = (*ADJUSTMENTS, ACCEPTED, GIVEN)  #: changes that the form offers
 _VALUED = (WEIGHT, TOLERANCE, PRICE, FULL, STEP, GIVEN)  #: changes with a number
 _ANSWERED = (PRICE, CURVE, ACCEPTED, GIVEN)  #: changes with a text
 _LONGEST = 500  #: characters of a text
-_FIELDS = ("kind", "question", "points", "answer", "why")
+_FIELDS = ("kind", "question", "points", "answer", "error", "why")
 _MOST_ROWS = 400  #: changed marks in the table
+_MOST_IDS = 1000  #: decisions undone at once
+PUT_ASIDE = "away"  #: in place of ids: what says nothing and was put away
 
 
 def exam_of(now: ClassState) -> Exam:
@@ -80,10 +84,10 @@ def _done(request: Request, exam: Exam) -> str:
     asked = request.form.text("do")
     if asked == "put_away":
         kept, done = exam.put_away(by, texts["put_away_why"]), texts["put_away"]
-    elif asked == "undo" and exam.decisions.standing_steps:
-        undone = _undone(exam, request.form.text("undo") or "1", request.form.text("of"))
+    elif asked == "undo":
+        undone = _undone(exam, request.form.text("undo"))
         kept = undoing(undone, by)
-        done = "; ".join(_undone_text(exam, one, request.lang) for one in reversed(undone))
+        done = "; ".join(_undone_texts(exam, undone, request.lang, "undone"))
     elif asked == "confirm":
         kept = [_step({name: request.form.text(name) for name in _FIELDS}, by)]
         exam.preview(kept)  # one that makes no sense stops here
@@ -105,23 +109,26 @@ def _done(request: Request, exam: Exam) -> str:
     return str(texts["done"]).format(done)
 
 
-def _undone(exam: Exam, asked: str, seen: str = "") -> Sequence[Decision]:
-    """Return the last standing steps, as many as a page asks for, that saw so many standing.
+def _undone(exam: Exam, asked: str) -> Sequence[Decision]:
+    """Return the standing decisions that a page names by their ids, or what was put away.
 
     Raises
     ------
     BadInput
-        There are fewer, or others than the page showed.
+        One of them does not stand, or none is named.
     """
-    steps = exam.decisions.standing_steps
-    count = int(asked) if asked.isdecimal() and len(asked) < 6 else 0
-    if not 0 < count <= len(steps) or seen not in ("", str(len(steps))):
-        raise BadInput("the decisions have changed since: look at them again before you undo any")
-    return steps[-count:]
+    found = exam.put_aside if asked == PUT_ASIDE else exam.undoable(asked.replace(",", " ").split()[:_MOST_IDS])
+    if not found:
+        raise BadInput("nothing is decided that could be undone")
+    return found
 
 
-def _undone_text(exam: Exam, undone: Decision, lang: str) -> str:
-    return str(words(lang)["after"]["undone"]).format(after_words.step_text(exam, undone, lang))
+def _undone_texts(exam: Exam, undone: Sequence[Decision], lang: str, tense: str) -> list[str]:
+    """Return a line for each decision that is taken back, the last first; one for all answers of students together."""
+    texts = words(lang)["after"]
+    lines = [after_words.step_text(exam, one, lang) for one in reversed(undone) if not one.student]
+    own = sum(bool(one.student) for one in undone)
+    return [str(texts[tense]).format(line) for line in [*lines, *([texts["aside"].format(own)] if own else [])]]
 
 
 def _step(fields: Mapping[str, str], by: str) -> Decision:
@@ -136,10 +143,13 @@ def _step(fields: Mapping[str, str], by: str) -> Decision:
     if kind not in OFFERED:
         raise BadInput("no change is chosen")
     exercise, _, part = fields["question"].partition("/") if kind not in ON_SCALE else ("", "", "")
+    if not exercise and kind not in (*ON_SCALE, PRICE):
+        raise BadInput("no question is chosen")
     points = typed_number(fields["points"].strip()) if kind in _VALUED else None
     if points is not None and points != points:
         raise BadInput("this change needs a number: points, margins, a share or a step")
-    answer = fields["answer"].strip()[:_LONGEST] if kind in _ANSWERED else None
+    text = fields["error" if kind == PRICE else "answer"] or fields["answer"]
+    answer = text.strip()[:_LONGEST] if kind in _ANSWERED else None
     if kind in _ANSWERED and not answer:
         raise BadInput("this change needs a text: the answer, the verdict or the curve")
     return step(kind, exercise, part, points, answer, fields["why"].strip()[:_LONGEST], by)
@@ -149,15 +159,17 @@ def _page(request: Request, now: ClassState, fields: Mapping[str, str], message:
     exam, lang = exam_of(now), request.lang
     preview: Preview | None = None
     texts: list[str] = []
+    written_so = None
     if fields["kind"] or fields.get("undo"):
         try:
             if fields["kind"]:
                 changes = [_step(fields, request.actor.name)]
                 texts = [after_words.step_text(exam, one, lang) for one in changes]
+                written_so = exam.count_of(changes[0]) if changes[0].kind in (ACCEPTED, GIVEN) else None
             else:
                 undone = _undone(exam, fields["undo"])
                 changes = undoing(undone, request.actor.name)
-                texts = [_undone_text(exam, one, lang) for one in reversed(undone)]
+                texts = _undone_texts(exam, undone, lang, "to_undo")
             preview = exam.preview(changes)
         except BadInput as fault:
             message = message or localised(fault)
@@ -171,6 +183,7 @@ def _page(request: Request, now: ClassState, fields: Mapping[str, str], message:
         "told": message,
         "preview": preview,
         "texts": texts,
+        "written_so": written_so,
         "current": current,
         "bins": after_words.bins(current, lang),
         "steps": [
@@ -183,19 +196,30 @@ def _page(request: Request, now: ClassState, fields: Mapping[str, str], message:
         "share": lambda value: localise(f"{value:.2f}", lang),
         "points_text": lambda question: after_words.points_text(question, lang),
         "counting_text": lambda question: after_words.counting_text(question, lang),
-        "verdicts": _verdicts(exam),
+        "errors": _errors(exam, lang),
+        "on_questions": [kind for kind in OFFERED if kind not in ON_SCALE],
+        "ids": [one.id for one in steps],
+        "put_aside": PUT_ASIDE,
         "most_rows": _MOST_ROWS,
         "most": max((*current.counts, *(preview.now.counts if preview else ())), default=0),
     }
     return class_page_of(request, now, "site/instructor/after", "after", **names)
 
 
-def _verdicts(exam: Exam) -> list[str]:
-    """Return the verdicts of the class whose price may change."""
-    names = {line.verdict for graded in exam.machine for line in graded.lines.values()}
-    return sorted(
-        name for name in names if name.startswith(("slip", "mistake", "follow", "missing_u", "wrong_u"))
-    )
+def _errors(exam: Exam, lang: str) -> list[tuple[str, str, int]]:
+    """Return the errors whose price may change, in words and with the number of answers: families, then those of the class."""
+    counts: Counter[str] = Counter()
+    exercise_of = {}
+    for graded in exam.machine:
+        for line in graded.lines.values():
+            for name in {line.verdict, line.verdict.partition(":")[0]}:
+                counts[name] += 1
+                exercise_of.setdefault(name, graded.exercise)
+    priced = [name for name in counts if name.partition(":")[0] in PRICED]
+    named = [
+        (name, after_words.error_text(exam, exercise_of[name], name, lang), counts[name]) for name in priced
+    ]
+    return sorted(named, key=lambda one: (":" in one[0], -one[2], one[1]))
 
 
 ROUTES = (Route("/desk/{assignment:int}/after", after_exam, Permission.MARKS_REGRADE, takes_forms=True),)
