@@ -5,7 +5,7 @@ from __future__ import annotations
 import getpass
 import re
 import sys
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from datetime import date
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -24,7 +24,7 @@ from coursework.cli.options import (
 )
 from coursework.cli.printing import print_json, print_table, progress_bar, say, warn
 from coursework.errors import BadInput, counted
-from coursework.language.words import languages, words
+from coursework.language.words import words
 from coursework.messages import Message, language_of_messages, localised
 from coursework.system.visible import one_line
 
@@ -79,7 +79,9 @@ def _several(name: str, metavar: str, **more: Any) -> Callable[[Any], Any]:
 @click.option("--curve", metavar="POINTS:MARK…", help='Scale by points: "0:0 16:10 32:20".')
 @click.option("--step", "rounding", type=float, help="Step to which marks are rounded.")
 @click.option(
-    "--restated", is_flag=True, help="Apply the weights that FILE states now, changed after issuing."
+    "--restated",
+    is_flag=True,
+    help="Apply the weights and prices that FILE states now, changed after issuing.",
 )
 @click.option(
     "--put-away", is_flag=True, help="Put away the waiting answers that say nothing, without points."
@@ -383,15 +385,15 @@ def _tell(exam: Exam, restated: Sequence[Decision], notes: Sequence[Message]) ->
     print_table([_question_row(question, texts, lang) for question in exam.table], texts["table"])
     if restated or notes:
         click.echo(f"\n{texts['file_says']}")
-    for step in restated:
-        click.echo(f"  {said.step_text(exam, step, lang)}")
+    for _, text in said.stroke_texts(exam, restated, lang):
+        click.echo(f"  {text}")
     for note in notes:
         click.echo(f"  {localised(note)}")
     if restated:
         click.echo(f"  {texts['apply_file']}{colon} --restated")
     click.echo(f"\n{texts['steps']}")
-    for step in exam.decisions.standing_steps:
-        click.echo("  " + one_line(step_line(exam, step, lang)))
+    for line in step_lines(exam, exam.decisions.standing_steps, lang):
+        click.echo(f"  {line}")
     if not exam.decisions.standing_steps:
         click.echo("  " + texts["no_steps"])
 
@@ -413,13 +415,16 @@ def _tell_cards(exam: Exam) -> None:
     )
 
 
-def step_line(exam: Exam, step: Decision, lang: str) -> str:
-    """Return a line on a step: its id, the day, who, what, and why."""
+def step_lines(exam: Exam, steps: Iterable[Decision], lang: str) -> list[str]:
+    """Return a line on the steps of each stroke: its id, the day, who, what, and why."""
     from coursework.gradebook import after_words as said
 
-    day = step.made.astimezone().date().isoformat() if step.made else "–"
-    line = str(words(lang)["after"]["step_line"]).format(day, step.by, said.step_text(exam, step, lang))
-    return f"{step.id}  {line} ({step.reason})" if step.reason else f"{step.id}  {line}"
+    lines = []
+    for step, text in said.stroke_texts(exam, steps, lang):
+        day = step.made.astimezone().date().isoformat() if step.made else "–"
+        line = str(words(lang)["after"]["step_line"]).format(day, step.by, text)
+        lines.append(one_line(f"{step.id}  {line} ({step.reason})" if step.reason else f"{step.id}  {line}"))
+    return lines
 
 
 def _question_row(question: Any, texts: Any, lang: str) -> dict[str, Any]:
@@ -459,12 +464,10 @@ def _tell_preview(
     texts, colon = words(lang)["after"], words(lang)["sheet"]["colon"]
     made = steps[: len(steps) - len(undone)]
     click.echo(texts["preview"])
-    for step in made:
-        if not step.student:
-            click.echo(one_line(said.step_text(exam, step, lang)))
-    for step in reversed(undone):
-        if not step.student:
-            click.echo(one_line(texts["to_undo"].format(step_line(exam, step, lang))))
+    for _, text in said.stroke_texts(exam, (step for step in made if not step.student), lang):
+        click.echo(one_line(text))
+    for line in reversed(step_lines(exam, (step for step in undone if not step.student), lang)):
+        click.echo(texts["to_undo"].format(line))
     for title, among in (("put_away", made), ("back", undone)):
         if own := [f"{exam.shown(one.student)} ({one.answer})" for one in among if one.student]:
             click.echo(one_line(f"{texts[title]}{colon} {_named(own)}"))

@@ -17,6 +17,7 @@ from sqlalchemy import Connection, delete, insert, literal, select
 from coursework.database.tables import decision, mark, marking, variant, worksheet
 from coursework.errors import BadInput, UnknownName, nearest
 from coursework.gradebook.adjustments import ADJUSTMENTS, check_adjustment
+from coursework.gradebook.decision import new_id, with_ids
 from coursework.gradebook.decisions import (
     ACCEPTED_FILE,
     DECISIONS_FILE,
@@ -30,7 +31,6 @@ from coursework.gradebook.decisions import (
     Decisions,
     check_points,
 )
-from coursework.gradebook.decision import new_id, with_ids
 from coursework.issuing.students import folded
 
 # ---------------------------------------------------------------------- writing

@@ -7,15 +7,17 @@ from __future__ import annotations
 
 import re
 from collections import Counter
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from datetime import UTC, date, datetime
 from functools import cached_property
 from typing import Any, NamedTuple
 
 from coursework.course.course import Course
-from coursework.gradebook.adjustments import NEUTRAL, SPARED, STEP, WEIGHT, Adjustments, Question
+from coursework.course.marking_rules import Rules
+from coursework.gradebook.adjustments import NEUTRAL, PRICE, SPARED, STEP, WEIGHT, Adjustments, Question
 from coursework.gradebook.book import Gradebook, Result, Sitting, results
+from coursework.gradebook.class_marking import rules_of
 from coursework.gradebook.decision import new_id
 from coursework.gradebook.decisions import ACCEPTED, GIVEN, WITHDRAWN, Decision, Decisions, check_steps
 from coursework.gradebook.graded_sheet import Graded
@@ -44,6 +46,7 @@ from coursework.language.words import languages, words
 from coursework.marking.mark import WAITING, Mark
 from coursework.messages import Message
 from coursework.parsing.spoken import refers_elsewhere, says_nothing
+from coursework.quantities.error_kinds import PENALTIES
 
 _SLASH = re.compile(r"[^/]*[0-9][^/]*/[^/]*[0-9][^/]*")
 _SHARED = 0.5  #: of the answers to a question, from which one wrong answer may be right after all
@@ -243,6 +246,10 @@ class Exam:
         """Return the number of a question on the papers, such as ``2.3``."""
         return number_of(self.questions, exercise, part)
 
+    def exercise_number(self, exercise: str) -> str:
+        """Return the number of an exercise on the papers; empty for one that they do not have."""
+        return next((self.number(*one).partition(".")[0] for one in self.questions if one[0] == exercise), "")
+
     @cached_property
     def open(self) -> list[tuple[AnswerGroup, tuple[AnswerToReview, ...]]]:
         """Groups of answers to review, each with those of its answers on which nobody has decided."""
@@ -335,9 +342,7 @@ class Exam:
             One of them does not stand.
         """
         found = {id(one) for name in ids for one in self.decisions.called(name)}
-        return [
-            one for one in (*self.decisions.standing_steps, *self.decisions.own) if id(one) in found
-        ]
+        return [one for one in (*self.decisions.standing_steps, *self.decisions.own) if id(one) in found]
 
     @cached_property
     def patterns(self) -> list[SuspiciousPattern]:
@@ -479,7 +484,7 @@ def steps_since(steps: Sequence[Decision], day: date) -> Sequence[Decision]:
 class Restated(NamedTuple):
     """Difference between an assignment's file and what was issued."""
 
-    steps: tuple[Decision, ...]  #: new weights, and the new step of the mark
+    steps: tuple[Decision, ...]  #: new weights and prices, and the new step of the mark
     notes: tuple[Message, ...]  #: differences that no step applies
 
 
@@ -517,11 +522,34 @@ def restated(assignment: Assignment, exam: Exam) -> Restated:
                     before=before.get("of"),
                 )
             )
-    if dict(assignment.marking) != dict(stated.get("marking") or {}):
-        notes.append(
-            Message(
-                "{file} states other rules in [marking] than the papers, which stay: change a price or a margin here",
-                file=name,
-            )
+    rules = Rules.of(assignment.marking, name, exam.course.folder.rules)
+    issued_rules = rules_of(exam.course, exam.issued) or exam.course.folder.rules
+    steps += _restated_prices(exam, issued_rules, rules)
+    notes += [
+        Message(
+            "{file} states {rule} = {now:g} in [marking], and the papers {before:g}, which stays: widen a margin or accept answers here",
+            file=name,
+            rule=rule,
+            now=getattr(rules, rule),
+            before=getattr(issued_rules, rule),
         )
+        for rule in ("digits", "other_case")
+        if getattr(rules, rule) != getattr(issued_rules, rule)
+    ]
     return Restated(tuple(steps), tuple(notes))
+
+
+def _restated_prices(exam: Exam, before: Rules, now: Rules) -> Iterator[Decision]:
+    """Yield the prices that rules of marking state now and did not before, unless a step has applied them."""
+    stroke = new_id()
+    kinds = [kind for kind in PENALTIES if now.share(kind) != before.share(kind)]
+    shares = {("", f"slip:{kind}"): now.share(kind) for kind in kinds if kind != "mistake"}
+    if now.follow_through != before.follow_through:
+        shares["", "follow_through"] = now.follow_through
+    for name in exam.issued.exercises if kinds else ():
+        for mistake in exam.course[name].solution.mistakes.values():
+            if mistake.share is None and mistake.kind in kinds:
+                shares[name, f"mistake:{mistake.name}"] = now.share(mistake.kind)
+    for (exercise, verdict), share in shares.items():
+        if exam.decisions.adjustments.prices.get((exercise, "", verdict)) != share:
+            yield step(PRICE, exercise, points=share, answer=verdict)._replace(id=stroke)

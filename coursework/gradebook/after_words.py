@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import NamedTuple
 
 from coursework.gradebook.adjustments import PRICE
@@ -31,6 +32,16 @@ def step_text(exam: Exam, step: Decision, lang: str) -> str:
     )
 
 
+def stroke_texts(exam: Exam, steps: Iterable[Decision], lang: str) -> list[tuple[Decision, str]]:
+    """Return the first of the steps that were made at one stroke, and what they do, stroke by stroke in their order."""
+    strokes: dict[str, list[Decision]] = {}
+    for one in steps:
+        strokes.setdefault(one.id, []).append(one)
+    several = str(words(lang)["after"]["several"])
+    texts = ((made[0], step_text(exam, made[0], lang), len(made)) for made in strokes.values())
+    return [(first, text if count == 1 else several.format(text, count)) for first, text, count in texts]
+
+
 class _Error(NamedTuple):
     exercise: str
     kind: str
@@ -51,7 +62,8 @@ def error_text(exam: Exam, exercise: str, verdict: str, lang: str) -> str:
 def _place(exam: Exam, step: Decision, lang: str) -> str:
     if (step.exercise, step.part) in exam.questions:
         return exam.number(step.exercise, step.part)
-    return step.exercise or str(words(lang)["after"]["kinds"]["everywhere"])
+    texts, number = words(lang)["after"]["kinds"], exam.exercise_number(step.exercise)
+    return str(texts["exercise"]).format(number) if number else str(step.exercise or texts["everywhere"])
 
 
 def counting_text(question: ExamQuestion, lang: str) -> str:

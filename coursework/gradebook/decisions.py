@@ -433,7 +433,9 @@ def _decision(
     seed = re.sub(r"[.,]0+$", "", row.get("seed", ""))  # as spreadsheets write whole numbers
     answer = row.get("answer", "") if listed else row.get("answer") or None if "kind" in row else None
     named = row["student"], row["exercise"], seed, row["part"]
-    return Decision(*named, kind, points, row.get("reason", ""), answer, by, None, number, location, *_ids(row))
+    return Decision(
+        *named, kind, points, row.get("reason", ""), answer, by, None, number, location, *_ids(row)
+    )
 
 
 def _step(
@@ -450,7 +452,9 @@ def _step(
     seed = re.sub(r"[.,]0+$", "", row.get("seed", ""))
     named = "", row.get("exercise", ""), seed, row.get("part", "")
     answer, by = row.get("answer") or None, row.get("by") or by
-    return Decision(*named, kind, points, row.get("reason", ""), answer, by, made, number, location, *_ids(row))
+    return Decision(
+        *named, kind, points, row.get("reason", ""), answer, by, made, number, location, *_ids(row)
+    )
 
 
 def _ids(row: Mapping[str, str]) -> tuple[str, str]:

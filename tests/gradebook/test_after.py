@@ -15,12 +15,13 @@ NAMES = [f"S{k:02}" for k in range(12)]
 
 @pytest.fixture
 def marked(small_course, tmp_path):
-    """Twelve students, of whom the six best answer v wrongly and the others rightly; and two answers that wait."""
+    """Twelve students, of whom the six best answer v wrongly and the others rightly; a wrong sign, and two answers that wait."""
     course = coursework.open_course(small_course)
     papers = issue(tmp_path, [item(course, name, 5) for name in NAMES])
     rows = []
     for k, name in enumerate(NAMES):
-        wrong = {"v": 77.7} if k < 6 else {"x": 77.7 + k, "y": 99.9 + k} if k < 10 else {"x": "hm 3 or 4"}
+        wrong = {"v": 77.7} if k < 6 else {"x": 77.7 + k, "y": 99.9 + k} if k < 9 else {"x": "hm 3 or 4"}
+        wrong = {"x": -course["crank_pin"].variant(5).solution()["x"]} if k == 9 else wrong
         rows += right(course, name, 5, **wrong)
     rows += [["Nobody", "crank_pin", 5, "v", "1"]]
     grade(course, papers, rows)
@@ -137,7 +138,9 @@ def test_a_change_in_the_middle_is_taken_back_by_its_id(marked, capsys):
     assert f"To undo: {weight}" in told
     assert "Undone" not in told
     assert after("--undo", weight, "--yes") == 0
-    assert [(r["kind"], r["withdraws"]) for r in table(folder / "decisions.csv")][2:] == [("withdrawn", weight)]
+    assert [(r["kind"], r["withdraws"]) for r in table(folder / "decisions.csv")][2:] == [
+        ("withdrawn", weight)
+    ]
     assert after("--undo", weight) == after("--undo", "zzz") == 2
     assert re.findall("taken back already|those that stand are .*", capsys.readouterr().err) == [
         "taken back already",
@@ -172,3 +175,29 @@ def test_what_was_refused_and_taken_back_is_decided_anew(marked, capsys):
     path.write_text(path.read_text("utf-8") + "S10,crank_pin,5,x,,accepted,,,,,,,\n", "utf-8")
     capsys.readouterr()
     assert said_by(capsys, after)["provisional"] == {"S11": 1}
+
+
+def test_prices_changed_in_the_file_count_when_confirmed_as_if_the_papers_had_stated_them(marked, capsys):
+    folder, after = marked
+    plain, before = folder.parent / "issued.json", (folder / "marks.csv").read_text("utf-8")
+    content = json.loads(plain.read_text("utf-8"))
+    file = folder.parent / "week3.toml"
+    rules = "[marking]\ndigits = 3\nfollow_through = 0.4\n[marking.prices]\nsign = 0.75\nmistake = 0.25\n"
+    file.write_text(file.read_text("utf-8").replace("points = { x = 3 }", "") + rules, "utf-8")
+    capsys.readouterr()
+    assert after() == 1
+    assert "digits = 3 in [marking], and the papers 4" in capsys.readouterr().out
+    assert after("--restated", "--yes") == 0
+    (stroke,) = {row["id"] for row in table(folder / "decisions.csv")}
+    prices = {row["answer"]: row["points"] for row in table(folder / "decisions.csv")}
+    assert (prices["slip:sign"], prices["follow_through"]) == ("0.75", "0.4")
+    capsys.readouterr()
+    after()
+    assert "--restated" not in capsys.readouterr().out
+    decided = (folder / "marks.csv").read_text("utf-8")
+    assert decided != before
+    content["assignment"]["marking"] = {"follow_through": 0.4, "prices": {"sign": 0.75, "mistake": 0.25}}
+    plain.write_text(json.dumps(content), "utf-8")
+    assert after("--undo", stroke, "--yes") == 0
+    assert table(folder / "decisions.csv")[-1]["withdraws"] == stroke
+    assert (folder / "marks.csv").read_text("utf-8") == decided

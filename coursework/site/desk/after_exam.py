@@ -117,7 +117,9 @@ def _undone(exam: Exam, asked: str) -> Sequence[Decision]:
     BadInput
         One of them does not stand, or none is named.
     """
-    found = exam.put_aside if asked == PUT_ASIDE else exam.undoable(asked.replace(",", " ").split()[:_MOST_IDS])
+    found = (
+        exam.put_aside if asked == PUT_ASIDE else exam.undoable(asked.replace(",", " ").split()[:_MOST_IDS])
+    )
     if not found:
         raise BadInput("nothing is decided that could be undone")
     return found
@@ -126,9 +128,12 @@ def _undone(exam: Exam, asked: str) -> Sequence[Decision]:
 def _undone_texts(exam: Exam, undone: Sequence[Decision], lang: str, tense: str) -> list[str]:
     """Return a line for each decision that is taken back, the last first; one for all answers of students together."""
     texts = words(lang)["after"]
-    lines = [after_words.step_text(exam, one, lang) for one in reversed(undone) if not one.student]
+    strokes = after_words.stroke_texts(exam, (one for one in undone if not one.student), lang)
+    lines = [text for _, text in reversed(strokes)]
     own = sum(bool(one.student) for one in undone)
-    return [str(texts[tense]).format(line) for line in [*lines, *([texts["aside"].format(own)] if own else [])]]
+    return [
+        str(texts[tense]).format(line) for line in [*lines, *([texts["aside"].format(own)] if own else [])]
+    ]
 
 
 def _step(fields: Mapping[str, str], by: str) -> Decision:
@@ -176,7 +181,7 @@ def _page(request: Request, now: ClassState, fields: Mapping[str, str], message:
     names_of = Names(now.course, statistics_of(now), lang)
     captions = {(one.exercise, one.part): names_of.question(one) for one in exam.table}
     current = exam.distribution()
-    steps = exam.decisions.standing_steps
+    strokes = after_words.stroke_texts(exam, exam.decisions.standing_steps, lang)
     names: dict[str, Any] = {
         "exam": exam,
         "fields": fields,
@@ -186,10 +191,7 @@ def _page(request: Request, now: ClassState, fields: Mapping[str, str], message:
         "written_so": written_so,
         "current": current,
         "bins": after_words.bins(current, lang),
-        "steps": [
-            (moment(one.made, lang) if one.made else "", one, after_words.step_text(exam, one, lang))
-            for one in steps
-        ],
+        "steps": [(moment(one.made, lang) if one.made else "", one, text) for one, text in strokes],
         "offered": OFFERED,
         "caption": lambda question: captions[question.exercise, question.part],
         "number": lambda value: after_words.number(value, lang),
@@ -198,7 +200,7 @@ def _page(request: Request, now: ClassState, fields: Mapping[str, str], message:
         "counting_text": lambda question: after_words.counting_text(question, lang),
         "errors": _errors(exam, lang),
         "on_questions": [kind for kind in OFFERED if kind not in ON_SCALE],
-        "ids": [one.id for one in steps],
+        "ids": [one.id for one, _ in strokes],
         "put_aside": PUT_ASIDE,
         "most_rows": _MOST_ROWS,
         "most": max((*current.counts, *(preview.now.counts if preview else ())), default=0),
