@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import pytest
-from sqlalchemy import func, select
+from sqlalchemy import func, select, update
 from stored_class import ANA, BEN, content, put, rows
 from tables import each_row
 
 import coursework
 from coursework.database.current_marks import graded
-from coursework.database.decisions import decide, history, store_new_decisions
+from coursework.database.decisions import decide, history, read_decisions, store_new_decisions
 from coursework.database.marking import mark_new
 from coursework.database.tables import decision
 from coursework.errors import BadInput, UnknownName
@@ -158,3 +158,30 @@ def test_steps_come_from_a_file_once_and_go_with_their_line(course, store, numbe
         say(store, number, [PLACE._replace(student="", seed="")], "weight", -1, "")
     with pytest.raises(UnknownName):  # of one student there is no weight
         say(store, number, [PLACE], "weight", 2, "")
+
+
+def test_any_step_is_taken_back_by_its_id_from_a_file_or_written_before_there_were_ids(
+    course, store, number, tmp_path
+):
+    step = PLACE._replace(student="", seed="", part="y")
+    for points in (7, 8):
+        say(store, number, [step], "weight", points, "")
+    with store.begin() as connection:
+        connection.execute(update(decision).values(lasting_id=None))
+    path = tmp_path / DECISIONS_FILE
+    header = "exercise,part,kind,points,by,id,withdraws"
+
+    def taken_in(*lines):
+        path.write_text("\n".join((header, *lines)) + "\n", "utf-8")
+        with store.begin() as connection:
+            store_new_decisions(connection, number, DecisionFiles(tmp_path))
+            return read_decisions(connection, number).standing_steps
+
+    first, second, own = taken_in(weight := "crank_pin,y,weight,9,,own,")
+    assert (first.points, second.points, own.id, first.id != second.id) == (7, 8, "own", True)
+    taken_back = taken_in(weight, "crank_pin,y,withdrawn,,,b,own", f"crank_pin,y,withdrawn,,,a,{first.id}")
+    assert taken_back == taken_in(
+        weight, "crank_pin,y,withdrawn,,,b,own", f"crank_pin,y,withdrawn,,,a,{first.id}"
+    )
+    assert [one.points for one in taken_back] == [8]
+    assert line(store, number, part="y").out_of == 8

@@ -40,7 +40,20 @@ from coursework.system.zips import zipped
 
 _NAME = 120  #: bytes of a file's name; longer names lose their beginning
 _NAMED = 10  #: students named in a message
-_DECISIONS = ("made", "by", "kind", "student", "exercise", "seed", "part", "points", "reason", "answer")
+_DECISIONS = (
+    "made",
+    "by",
+    "kind",
+    "student",
+    "exercise",
+    "seed",
+    "part",
+    "points",
+    "reason",
+    "answer",
+    "id",
+    "withdraws",
+)
 _DELIVERIES = ("came", "source", "number", "late", "receipt")
 
 
