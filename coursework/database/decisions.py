@@ -104,8 +104,8 @@ _STORED = Decision._fields[: Decision._fields.index("line")]  #: fields of a dec
 
 def stored_decision(row: Any) -> Decision:
     """Return the decision of a row."""
-    stated = (getattr(row, name) for name in _STORED)
-    return Decision(*stated, id=row.lasting_id or "", withdraws=row.withdraws or "")
+    stated = Decision(*(getattr(row, name) for name in _STORED))
+    return stated._replace(id=row.lasting_id or "", withdraws=row.withdraws or "")
 
 
 def read_decisions(connection: Connection, assignment_id: int, student: str | None = None) -> Decisions:
@@ -243,5 +243,7 @@ def _remembered(connection: Connection, assignment_id: int, path: Path) -> list[
         worksheet.c.assignment_id == assignment_id, worksheet.c.file == _file(path)
     )
     lines = connection.execute(query).scalar() or ()
+    # A line of before has no ids.
     ids = (dict(zip(("id", "withdraws"), line[_STATED:], strict=False)) for line in lines)
-    return with_ids(Decision(*line[:_STATED], **its) for line, its in zip(lines, ids, strict=True))
+    stated = (Decision(*line[:_STATED]) for line in lines)
+    return with_ids(one._replace(**its) for one, its in zip(stated, ids, strict=True))

@@ -48,7 +48,7 @@ STEP_COLUMNS = ("by", "date", "id", "withdraws")  #: more columns where a line i
 TO_MARK_FILE, ACCEPTED_FILE, EDITED_FILE = "to_mark.csv", "accepted.csv", "by_hand.csv"  #: of before
 _NEEDED = ("student", "exercise", "part")
 _OPTIONAL = ("seed", "points", "reason", "kind")
-_LONGEST_ID = 40
+_LONGEST_ID, _PREFIX = 40, 3
 _SHOWN = 12  #: ids in a message
 _ALIKE = 0.75  #: of two column names, beyond which one is the other with a typing error
 
@@ -97,7 +97,8 @@ class Decisions:
         return [one for decisions in self._of.values() for one in in_force(decisions)]
 
     def called(self, name: str) -> list[Decision]:
-        """Return the standing decisions of an id, or of the only one that begins so; those of one stroke together.
+        """Return the standing decisions of an id, or of the only one that begins so by three letters at least; those of one
+        stroke together.
 
         Raises
         ------
@@ -105,7 +106,10 @@ class Decisions:
             There are none, since they are taken back or never were, or several ids begin so.
         """
         standing = [*self.standing_steps, *self._own_in_force]
-        ids = sorted({one.id for one in standing if one.id.startswith(name) and name})
+        long_enough = len(name) >= _PREFIX
+        ids = sorted(
+            {one.id for one in standing if one.id == name or (long_enough and one.id.startswith(name))}
+        )
         if name in ids or len(ids) == 1:
             return [one for one in standing if one.id == (name if name in ids else ids[0])]
         if len(ids) > 1:
@@ -209,21 +213,24 @@ class DecisionFiles:
         self._own: list[Decision] = self._read(own)
         if accepted is None and folder is not None and (folder / ACCEPTED_FILE).exists():
             accepted = folder / ACCEPTED_FILE
-        if accepted is not None:  # what was written before comes first, so that a withdrawal reaches it
-            self._read(accepted)
-            self.files = dict(reversed(self.files.items()))
+        self._read(accepted)
         self.decisions = Decisions(self.lines)
         self.is_edited = any(decision.kind == EDITED for decision in self._own)
         self.waiting = 0
         self.changed: list[str] = []  #: given points whose answers are not those that were marked
         self._rows: list[dict[str, Any]] = []  #: answers that a person marks
+        self._ids = {one.id for one in self._own if one.id}
         self._used: set[Decision] = set()
         self._listed: set[Decision] = set()  #: decisions that these rows or the warnings state
 
     @property
     def lines(self) -> Iterator[Decision]:
-        """Decisions of all files, in the order in which they count."""
-        return (one for decisions in self.files.values() for one in decisions if one.kind != EDITED)
+        """Decisions of all files, in the order in which they count: the steps of ``decisions.csv`` last, since it also states
+        what is taken back of the others."""
+        for decisions in reversed(self.files.values()):
+            yield from (one for one in decisions if not one.student and one.kind != EDITED)
+        for decisions in self.files.values():
+            yield from (one for one in decisions if one.student and one.kind != EDITED)
 
     def _read(self, path: Path | None) -> list[Decision]:
         if path is None or not (path.exists() or path.name not in (TO_MARK_FILE, DECISIONS_FILE)):
@@ -271,7 +278,10 @@ class DecisionFiles:
         row = _row(
             *graded[:3], mark.part, mark.answer, "", given and given.points, given.reason if given else ""
         )
-        self._rows.append({**row, "out_of": f"{mark.out_of:g}"} | _id_cells(given))
+        self._rows.append(
+            {**row, "out_of": f"{mark.out_of:g}"}
+            | (_id_cells(given) if given and given.id in self._ids else {})
+        )
 
     @property
     def _unused(self) -> list[Decision]:
@@ -312,6 +322,7 @@ class DecisionFiles:
     def add(self, decisions: Iterable[Decision]) -> None:
         """Add decisions as last lines of ``decisions.csv``; they count at once."""
         self._own += decisions
+        self._ids = {one.id for one in self._own}
         if self.path is not None:
             self.files[self.path] = self._own
         self.decisions = Decisions(self.lines)
@@ -375,8 +386,8 @@ def row_of(one: Decision) -> dict[str, Any]:
     return row
 
 
-def _id_cells(one: Decision | None) -> dict[str, str]:
-    return {} if one is None or not one.id else {"id": one.id, "withdraws": one.withdraws}
+def _id_cells(one: Decision) -> dict[str, str]:
+    return {"id": one.id, "withdraws": one.withdraws} if one.id else {}
 
 
 def _row(

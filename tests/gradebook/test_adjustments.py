@@ -84,6 +84,21 @@ def test_each_step_gives_the_marks_that_a_hand_computes(steps, expected):
     assert marks(*steps) == expected
 
 
+def test_a_decision_is_called_by_its_id_or_by_letters_that_begin_one_alone():
+    step = Decision("", "x", "", "b", "neutral")
+    decisions = Decisions(step._replace(id=name) for name in ("bcdfgh", "bcdkkk", "wwwwww"))
+    decisions = decisions.with_steps([step._replace(id="zzzzzz", kind="withdrawn", withdraws="wwwwww")])
+    assert [one.id for name in ("bcdfgh", "bcdk") for one in decisions.called(name)] == ["bcdfgh", "bcdkkk"]
+    for name, said in {
+        "bcd": "begins several",
+        "wwwwww": "back already",
+        "bc": "no decision",
+        "": "stand",
+    }.items():
+        with pytest.raises(BadInput, match=said):
+            decisions.called(name)
+
+
 @each_row(
     "kind, part, value, answer",
     [

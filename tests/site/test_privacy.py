@@ -168,6 +168,7 @@ NOBODYS = {
     "delivery.digest", "delivery.receipt", "answer.exercise", "answer.seed", "answer.part", "answer.answer", "answer.lang",
     "answer.student", "drawing", "marking.student", "marking.exercise", "marking.seed", "marking.state", "marking.lang", "mark",
     "decision.student", "decision.exercise", "decision.seed", "decision.part", "decision.kind", "decision.answer", "worksheet.file",
+    "decision.lasting_id", "decision.withdraws",
     "placing.row", "audit.what", "audit.address", "dealt", "scanned.page", "scanned.student", "scanned.kept", "scanned.picture", "typed.student", "typed.exercise",
     "typed.seed", "typed.part", "typed.coordinate", "typed.answer", "typed.seen",
 }  # fmt: skip

@@ -211,7 +211,7 @@ def _page(request: Request, now: ClassState, fields: Mapping[str, str], message:
 def _errors(exam: Exam, lang: str) -> list[tuple[str, str, int]]:
     """Return the errors whose price may change, in words and with the number of answers: families, then those of the class."""
     counts: Counter[str] = Counter()
-    exercise_of = {}
+    exercise_of: dict[str, str] = {}
     for graded in exam.machine:
         for line in graded.lines.values():
             for name in {line.verdict, line.verdict.partition(":")[0]}:
