@@ -131,6 +131,38 @@ def too_wide(page):
     return page.evaluate("document.documentElement.scrollWidth - document.documentElement.clientWidth")
 
 
+#: Texts and controls that a screen cuts at its side, where nothing can be scrolled to see them.
+_CUT = """() => {
+  const wide = document.documentElement.clientWidth, found = new Set();
+  const scrolls = (one) => one && one !== document.documentElement &&
+    (["auto", "scroll"].includes(getComputedStyle(one).overflowX) || scrolls(one.parentElement));
+  const look = (one, box) => {
+    if (box.width && box.height && (box.right > wide + 1 || box.left < -1) && one.checkVisibility({ visibilityProperty: true })
+        && !one.closest(".visually-hidden, .skip, svg, script, style, noscript") && !scrolls(one))
+      found.add(`${one.outerHTML.slice(0, 90)} ${Math.round(box.left)} to ${Math.round(box.right)} px`);
+  };
+  const texts = document.createTreeWalker(document.body, NodeFilter.SHOW_TEXT);
+  while (texts.nextNode()) {
+    const range = document.createRange();
+    range.selectNodeContents(texts.currentNode);
+    if (texts.currentNode.data.trim()) for (const box of range.getClientRects()) look(texts.currentNode.parentElement, box);
+  }
+  for (const one of document.querySelectorAll("button, input, select, textarea, img, summary, a[href]")) look(one, one.getBoundingClientRect());
+  return Array.from(found).slice(0, 5);
+}"""
+
+
+def cut_at_side(page):
+    """What of a page sticks out of its screen, where no scrolling shows it."""
+    return page.evaluate(_CUT)
+
+
+def enlarge_letters(page, percent=200):
+    """Set the size of letters as somebody does in the settings of a browser, before a page is opened."""
+    sizes = {"standard": 16 * percent // 100, "fixed": 13 * percent // 100}
+    page.context.new_cdp_session(page).send("Page.setFontSizes", {"fontSizes": sizes})
+
+
 #: Controls that a thumb does not hit; links within a text are none.
 _LOW = """() => {
   const inText = (one) => one.tagName === "A" && getComputedStyle(one).display === "inline" && one.closest("p, td, dd, li, h2, h3, summary");

@@ -96,16 +96,26 @@ def offline_text(page, address):
 def test_a_seen_page_opens_without_a_network_and_what_is_typed_goes_when_it_is_back(place):
     page = opened(place, ZOE, f"/practice/{EXERCISE}")
     address = page.url
-    page.wait_for_timeout(500)
+    page.fill("#answer-a-rA", "77")
+    page.fill("#answer-a-theta4", "88")
+    page.wait_for_selector("[data-kept]:has-text('Saved')")
+    page.wait_for_function("() => caches.match(location.pathname + '?saved')")
     page.context.set_offline(True)
     page.goto(address)
+    page.wait_for_function(
+        "document.querySelector('#answer-a-theta4').value === '88'"
+    )  # saved after it was opened
     page.fill("#answer-a-rA", "123")
     page.wait_for_selector("[data-kept]:has-text('No connection')")
+    page.goto(address)
     page.goto(f"{place[1]}/practice/grashof")
     assert "No network" in page.inner_text("main")
+    page.click(f"[data-kept-pages] a[href='{address}']")
+    page.wait_for_url(address)
     page.context.set_offline(False)
     page.goto(address)
     assert page.input_value("#answer-a-rA") == "123"
+    assert page.locator(".other-page:not(:empty)").count() == 0  # its own text is no other page's
     until, path = time.monotonic() + 30, address.removeprefix(place[1])
     while 'value="123"' not in place[0].browser(ZOE).get(path).text:  # another device has it
         assert time.monotonic() < until

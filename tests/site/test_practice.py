@@ -313,9 +313,9 @@ def test_two_pages_never_overwrite_one_another_unseen(zoe):
 
 
 def test_drafts_are_those_of_one_person(zoe):
-    zoe.send({"rA": "777"}, hint="rA")
+    zoe.send({"rA": "777.30777"}, hint="rA")
     other = zoe.class_.browser(MAX)
-    assert "777" not in other.get(zoe.address).text
+    assert "777.30777" not in other.get(zoe.address).text
 
 
 @each_row("below", ["", "/draft", "/read", "/solution", "/motion"])

@@ -63,7 +63,7 @@ class ReadBack(NamedTuple):
 
     status: str  #: ``read``, ``waits`` for a person, ``missing``, ``unreadable`` or ``wrong_unit``
     message: str  #: plain text; empty for an empty box
-    typeset: Markup = Markup("")  #: the same with formulas; empty where it has none
+    typeset: Markup = Markup("")  #: the same as it is printed; empty where that is no different
 
     @property
     def html(self) -> Markup:
@@ -82,7 +82,8 @@ def read_back(variant: Any, part: Part, text: str) -> ReadBack:
     if reading.status == "missing":
         return ReadBack("missing", "")
     if reading.status != "read":
-        return ReadBack(reading.status, say_not_read(variant, part, reading).texts(variant.lang)[1])
+        markdown, plain = say_not_read(variant, part, reading).texts(variant.lang)
+        return ReadBack(reading.status, plain, Markup(html_inline(markdown, variant.lang)))
     if part.sort.is_open:
         return ReadBack("waits", texts["waits"])
     lines = readings(variant, part, text)[1]

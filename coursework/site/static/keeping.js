@@ -181,6 +181,7 @@
       form.addEventListener("keep:tell", (event) => this.tell(event.detail.text));
       form.addEventListener("keep:renew", () => this.renew());
       this.restore();
+      this.recall().catch(() => undefined);
     }
     give(event, detail) { this.form.dispatchEvent(new CustomEvent("kept:" + event, { bubbles: true, detail: detail })); }
     async renew() {
@@ -190,6 +191,31 @@
     }
 
     // ------------------------------------------------------------ on this device
+    // What was saved since a page was made lies beside the page that the service worker keeps, and goes with it.
+    async beside(act) {
+      const name = "pages " + document.body.dataset.person;
+      if (!window.caches || !await caches.has(name)) return;
+      const cache = await caches.open(name), page = await cache.match(location.pathname);
+      if (page) await act(cache, location.pathname + "?saved", { "offline-until": page.headers.get("offline-until") });
+    }
+    async recall() {
+      await this.beside(async (cache, place) => {
+        const found = await cache.match(place), { versions, texts } = found ? await found.json() : { versions: {} };
+        for (const [name, version] of Object.entries(versions)) {
+          if (!own(this.known, name) || version <= (this.versions[name] || 0)) continue;
+          this.versions[name] = version;
+          this.known[name] = texts[name];
+          if (own(this.pending, name)) continue;
+          fill(this.form, name, texts[name]);
+          this.give("changed", { name: name });
+        }
+        this.state();
+      });
+    }
+    remember() {
+      const saved = JSON.stringify({ versions: this.versions, texts: this.known });
+      this.beside((cache, place, headers) => cache.put(place, new Response(saved, { headers: headers }))).catch(() => undefined);
+    }
     store() {
       if (!some(this.pending)) return device.drop(this.key);
       const page = { page: location.pathname, title: document.title, keep: this.form.dataset.keep };
@@ -215,7 +241,7 @@
       const found = entry(one.text, one.over, one.tried, union(before ? [before.text, ...before.beside] : [], one.beside));
       if (before && before.text === one.text) { found.over = Math.max(found.over, before.over); found.tried = union(before.tried, one.tried); }
       if (found.over < now && !found.tried.includes(this.known[name])) found.beside.push(this.known[name]);
-      else found.over = now;
+      else found.over = Math.max(found.over, now);  // a page that was kept is older than what was typed on it
       found.beside = union(found.beside).filter((text) => text !== found.text);
       if (!found.beside.length && found.text === this.known[name]) { delete this.pending[name]; return; }
       this.pending[name] = found;
@@ -280,12 +306,17 @@
       for (const [name, text] of Object.entries(told.read || {})) this.read(name, text);
       this.settled();
     }
-    settled() {
-      this.store();
-      const left = Object.values(this.pending), field = this.form.querySelector("[data-versions]");
-      const held = only(this.pending, ([, one]) => one.beside.length);
+    // The versions that a form sends of itself; of a box that waits for a choice, the one that was written over.
+    state() {
+      const field = this.form.querySelector("[data-versions]"), held = only(this.pending, ([, one]) => one.beside.length);
       const over = Object.fromEntries(Object.entries(held).map(([name, one]) => [name, one.over]));
       if (field) field.value = JSON.stringify({ ...this.versions, ...over });
+      return held;
+    }
+    settled() {
+      this.store();
+      this.remember();
+      const left = Object.values(this.pending), held = this.state();
       if (left.some((one) => !one.beside.length && one.refused !== one.text)) this.soon(0);
       else if (some(held)) this.tell(this.said.other);
       else this.tell(left.length ? this.said.refused : this.said.kept);

@@ -32,6 +32,26 @@
     }).catch(() => undefined);
   }
 
+  // Without a network the pages are listed that open, the last seen first.
+  async function list(place) {
+    const found = new Map();
+    for (const name of (await caches.keys()).filter((one) => one.startsWith("pages "))) {
+      const cache = await caches.open(name);
+      for (const { url } of (await cache.keys()).reverse()) {
+        const page = new DOMParser().parseFromString(await (await cache.match(url)).text(), "text/html"), title = page.title.split(" – ").slice(0, -1).join(" – ");
+        if (title && !found.has(title)) found.set(title, url);
+      }
+    }
+    for (const [title, url] of found) {
+      const row = document.createElement("li"), link = document.createElement("a");
+      link.href = url; link.textContent = title;
+      row.append(link); place.lastElementChild.append(row);
+    }
+    place.hidden = !found.size;
+  }
+  const kept = document.querySelector("[data-kept-pages]");
+  if (kept && window.caches) list(kept).catch(() => undefined);
+
   // Without a script a section stands in the whole lesson alone; with one the steps come as a file that the browser keeps.
   document.addEventListener("click", (event) => {
     const link = event.target.closest("a[href*='?whole#']");
