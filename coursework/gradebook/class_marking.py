@@ -26,8 +26,9 @@ from coursework.messages import Message, as_message
 from coursework.model import Part
 from coursework.system.processes import Task, in_turn, workers
 
-CHUNK = 500  #: sheets marked together
-_KNOWN = 2000  #: variants whose keys are kept for the next chunks
+CHUNK = 500  #: sheets marked together, at least
+_MOST = 2000  #: at most: the keys of many variants of one exercise cost little more than those of few
+_KNOWN = 8000  #: variants whose keys are kept for the next chunks
 WORTH_PROCESSES = 20_000  #: answers; fewer are marked before a process has started
 
 
@@ -117,15 +118,17 @@ def _judged(course: Course, issued: Issued, sheets: Sheets) -> Iterator[_MarkedS
     sent: deque[tuple[Sheets, list[SheetKey]]] = deque()  #: chunks that are being marked
 
     def chunks() -> Iterator[list[_SheetJob]]:
-        for among in sheets.parts(CHUNK):
+        for among in sheets.parts(size):
             places = list(among.sheets)
-            for start in range(0, len(places), CHUNK):
-                chunk = places[start : start + CHUNK]
+            for start in range(0, len(places), size):
+                chunk = places[start : start + size]
                 sent.append((among, chunk))
                 yield [_sheet_job(issued, among, sheet) for sheet in chunk]
 
+    count = workers(sheets.answers, WORTH_PROCESSES)
+    size = min(max(CHUNK, sheets.count // (4 * count)), _MOST)
     rules = rules_of(course, issued)
-    for results in _marked_chunks(course, chunks(), sheets.answers, rules):
+    for results in _marked_chunks(course, chunks(), size, count, rules):
         among, chunk = sent.popleft()
         for sheet, result in zip(chunk, results, strict=True):
             yield among, sheet, result if isinstance(result, str) else _graded(issued, among, sheet, result)
@@ -154,16 +157,15 @@ def _graded(issued: Issued, sheets: Sheets, sheet: SheetKey, sent: Sequence[tupl
 
 
 def _marked_chunks(
-    course: Course, chunks: Iterator[list[_SheetJob]], answers: int, rules: Rules | None
+    course: Course, chunks: Iterator[list[_SheetJob]], size: int, count: int, rules: Rules | None
 ) -> Iterator[list[list[tuple] | str]]:
-    """Yield each chunk marked, in order; use several processes for many answers."""
-    count = workers(answers, WORTH_PROCESSES)
+    """Yield each chunk of ``size`` sheets marked, in order; ``count`` processes share them."""
     if count < 2:
         known: dict[str, Variant] = {}
         for chunk in chunks:
             yield _mark_chunk(course, chunk, rules, known)
         return
-    root, first = str(course.folder.root), itertools.count(1, CHUNK)
+    root, first = str(course.folder.root), itertools.count(1, size)
     yield from in_turn(
         (Task(f"sheet {next(first)} on", _mark_elsewhere, (root, chunk, rules)) for chunk in chunks), count
     )
