@@ -24,6 +24,7 @@ from coursework.marking.marking import mark
 from coursework.marking.plain_answers import plainly_right
 from coursework.messages import Message, as_message
 from coursework.model import Part
+from coursework.system.garbage import paused_collection
 from coursework.system.processes import Task, in_turn, workers
 
 CHUNK = 500  #: sheets marked together, at least
@@ -202,10 +203,11 @@ def _mark_chunk(
         known.clear()
     known.update(variants)
     sheets = [(variants[names[id(job.record)]], job.answers) for job in chunk]
-    return [
-        _mark_sheet(*sheet, readings_of_sheet)
-        for sheet, readings_of_sheet in zip(sheets, plainly_right(sheets), strict=True)
-    ]
+    with paused_collection():
+        return [
+            _mark_sheet(*sheet, readings_of_sheet)
+            for sheet, readings_of_sheet in zip(sheets, plainly_right(sheets), strict=True)
+        ]
 
 
 def _mark_sheet(variant: Variant, answers: Mapping[str, Any], right: Mapping[str, str]) -> list[tuple] | str:
