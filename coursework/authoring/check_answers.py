@@ -17,6 +17,7 @@ from coursework.issuing.flaws import SHOWN, judged_wrong, visibility
 from coursework.marking.judges import judged, judges_of
 from coursework.marking.marking import mark as grade
 from coursework.model import Part
+from coursework.parsing.reading import MOST_TURNS
 from coursework.quantities.rounding import student_who_rounds
 
 NONSENSE = ("?", "je ne sais pas", "12 +", "nan", "9**9**9", "1 = 1 = 1", "__import__('os')", "((((", *(
@@ -151,8 +152,15 @@ def check_slips(variant: Variant, key: Key, report: CheckReport) -> None:
     reported: list[dict[str, tuple[str, Any]]] = []
     for part in (part for part in variant.parts if not part.sort.is_open):
         reference, width = key.reference[part.quantity], key.envelope.get(part.quantity, 0.0)
-        values = key.slip_values(part)
-        slips = [s for s in values if part.sort.distance(part, s[1], reference, None, width) > SHOWN]
+        slips = [
+            s
+            for s in key.slip_values(part)
+            if not (
+                part.sort.turn and abs(s[1]) > MOST_TURNS * part.sort.turn
+            )  # no direction is read from it
+            and part.sort.distance(part, s[1], reference, None, width) > SHOWN
+            and not _answers_another(key, part, s[1])
+        ]
         for index, slip in enumerate(slips):
             reported += [{}] * (index + 1 - len(reported))
             reported[index] = {**reported[index], part.id: slip}
@@ -168,6 +176,19 @@ def check_slips(variant: Variant, key: Key, report: CheckReport) -> None:
                     f"seed {variant.seed}: slip {kind} on {part_id} ({value!r}) marks {mark.verdict}, "
                     f"not slip:{kind}"
                 )
+
+
+def _answers_another(key: Key, part: Part, value: Any) -> bool:
+    """Return whether a wrong value is the right one of another question: two answers exchanged are no slip."""
+    return any(
+        other.quantity != part.quantity
+        and other.kind == part.kind
+        and other.sort.distance(
+            other, value, key.reference[other.quantity], None, key.envelope.get(other.quantity, 0.0)
+        )
+        <= 1
+        for other in key.variant.parts
+    )
 
 
 def check_follow_through(variant: Variant, key: Key, report: CheckReport) -> None:

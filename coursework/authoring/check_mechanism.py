@@ -22,6 +22,11 @@ _AGREES = 1e-7  #: of the largest rate
 _STEP = 1e-4  #: radians, of differences
 
 
+_SLOPES = (
+    np.array([[0, -1, 0, 1, 0], [0, 0, -3, 4, -1], [1, -4, 3, 0, 0]]) / 2
+)  #: a step apart, central if possible
+
+
 def check_mechanism(drawn: Sequence[Variant], report: CheckReport) -> None:
     """Joints hold together what they should in every variant, and their rates are the solution's own."""
     exercise = drawn[0].exercise
@@ -83,9 +88,12 @@ def _other_shifts(scene: Scene, stance: Stance, angle: float, size: float) -> It
     """Free bodies that go otherwise than their joints let them: their rates beside differences of their places."""
     if not scene.linkage.free:
         return
-    near = scene.pose(angle + _STEP * np.array([-1.0, 1.0]), by_joints=True)
+    near = scene.pose(angle + _STEP * np.arange(-2, 3), by_joints=True)
     for body in scene.linkage.free:
-        slope = (near.origins[body, 1] - near.origins[body, 0]) / (2 * _STEP)
+        places = near.origins[body]
+        # At an end of what drives there are places on one side alone.
+        slopes = [places[w != 0] @ w[w != 0] for w in _SLOPES if np.isfinite(places[w != 0]).all()]
+        slope = slopes[0] / _STEP if slopes else np.nan
         if not abs(slope - stance.origin_rates[body, 0]) <= 1e-6 * size:
             name = scene.mechanism.names[body]
             yield (

@@ -41,6 +41,7 @@ from coursework.issuing.flaws import conditioning
 from coursework.issuing.issuing import distinct_variants
 from coursework.issuing.protection import valid_variants
 from coursework.language.words import file_of, words
+from coursework.linkages.closure import RelativeGaps
 from coursework.model import Part
 from coursework.quantities.graph import plain_scalar
 from coursework.rendering.renderer import renderer_of
@@ -419,9 +420,12 @@ def check_solves(variant: Variant, key: Key, report: CheckReport) -> None:
 
 def _residuals(variant: Variant) -> Iterator[tuple[float, float]]:
     """Yield the largest value of each governing equation, and the size of its terms: the sum of what each number in it
-    contributes, by the change of the equation with that number; 1 where no number contributes."""
+    contributes, by the change of the equation with that number; 1 where no number contributes, or the equation is divided by it."""
     graph = variant.exercise.solution.residual_graph
     found = graph.everything(("residual",), variant.used, variant.effects, variant.computed)
+    if isinstance(found["residual"], RelativeGaps):
+        yield from ((float(np.max(gap)), 1.0) for gap in found["residual"])
+        return
     node = graph.node("residual")
     known = {**node.defaults, **variant.used, **found}
     arguments = [known[name] for name in node.arguments]

@@ -50,12 +50,14 @@ class Slip(NamedTuple):
         """Return the answer without it."""
         return answer / self.factor
 
-    def is_turned(self, answers: Iterable[float], turn: float) -> bool:
-        """Return whether directions are more than a ``turn`` when mended: modulo a turn, some are near to anything."""
+    def is_turned(self, answers: Iterable[float], turn: float, reference: float = 0.0) -> bool:
+        """Return whether directions are more than a ``turn``, and than the right one, when mended: modulo a turn, some are near
+        to anything."""
+        most = turn if abs(reference) <= turn else turn + abs(reference)
         return (
             bool(turn)
             and self.kind == "radians"
-            and all(abs(self.mended(answer)) > turn for answer in answers)
+            and all(abs(self.mended(answer)) > most for answer in answers)
         )
 
     def trace(self, unit: str) -> str:

@@ -136,6 +136,10 @@ def _graph(functions: tuple[Callable[..., Any], ...]) -> Graph:
     return Graph({f.__name__: f for f in functions})
 
 
+class RelativeGaps(tuple[Any, ...]):
+    """Gaps of equations over the sizes of their terms: 1 is a gap as large as what it is made of."""
+
+
 class SlideTrack(NamedTuple):
     """Slide as the file states it: the sliding point, its body, the guide, a place on the line and its direction in the guide's frame
     (mm, degrees; quantities or functions of them), the quantity that is the distance along it."""
@@ -155,7 +159,7 @@ def closure_gaps(
     driver: str,
     order: int,
     values: Mapping[str, Any],
-) -> tuple[Any, ...]:
+) -> RelativeGaps:
     """Return how far joints are from holding, and their velocities and accelerations from agreeing.
 
     Parameters
@@ -189,7 +193,7 @@ def closure_gaps(
         _Frames(mechanism, driver, {n: v[k].item() for n, v in flat.items()}).gaps(tracks, sides, order)
         for k in range(int(np.prod(shape, dtype=int)))
     ]
-    return tuple(np.reshape(column, shape)[()] for column in np.array(rows).T)
+    return RelativeGaps(np.reshape(column, shape)[()] for column in np.array(rows).T)
 
 
 class _Frames:
@@ -239,16 +243,7 @@ class _Frames:
         linkage = self.linkage
         closing = [pin for pin in linkage.pins if pin.closes]
         ends = [(self.carried(pin.of), self.carried(pin.on)) for pin in closing]
-        far = max(
-            [
-                1e-12,
-                *(abs(z) for pair in ends for place in pair for z in place[:1]),
-                *(abs(o[0]) for o in self.origins),
-            ]
-        )
-        fast = max([1e-12, *(abs(r) * far for r in self.rates)])
-        faster = max([1e-12, *((r**2 + abs(g)) * far for r, g in zip(self.rates, self.gains, strict=True))])
-        sizes = (far, fast, faster)
+        sizes = self._sizes([place for pair in ends for place in pair], tracks)
         results = [abs(one[k] - other[k]) / sizes[k] for one, other in ends for k in range(order + 1)]
         for gear in linkage.gears:
             results += self._of_gear(gear, order)
@@ -259,6 +254,24 @@ class _Frames:
             area = ((Q - P).conjugate() * (B - P)).imag / max(abs(Q - P) * abs(B - P), 1e-300)
             results.append(max(-area * float(linkage.values[side]), 0.0))
         return results
+
+    def _sizes(
+        self, ends: Sequence[tuple[complex, complex, complex]], tracks: Sequence[SlideTrack]
+    ) -> tuple[float, float, float]:
+        """Return the largest distance, velocity and acceleration: where nothing turns, those of what slides."""
+        places = [*ends, *self.origins]
+        far = max([1e-12, *(abs(place[0]) for place in places)])
+        slid = [
+            [float(self.linkage.values.get(f"{t.distance}{end}", 0.0)) * MM for t in tracks]
+            for end in ("_dot", "_ddot")
+        ]
+        turned = [abs(r) * far for r in self.rates]
+        grown = [(r**2 + abs(g)) * far for r, g in zip(self.rates, self.gains, strict=True)]
+        fast, faster = (
+            max([1e-12, *own, *(abs(place[k]) for place in places), *map(abs, slid[k - 1])])
+            for k, own in ((1, turned), (2, grown))
+        )
+        return far, fast, faster
 
     def _of_gear(self, gear: GearJoint, order: int) -> list[float]:
         """Return how far two wheels are from rolling on each other: their arcs, seen from the carrier, and the rates of these."""

@@ -240,7 +240,7 @@ def _explanations(
     seen = set()
     for slip in key.slips(judged_by):
         mended = [slip.mended(value) for value in reading.values]
-        fits = slip.kind not in seen and not slip.is_turned(reading.values, part.sort.turn)
+        fits = slip.kind not in seen and not slip.is_turned(reading.values, part.sort.turn, reference)
         fit = _fitting(part, mended, reference, None, width) if fits else None
         if fit is None:
             continue

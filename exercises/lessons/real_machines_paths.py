@@ -253,7 +253,7 @@ STEADY = np.linspace(105.0, 255.0, 601)  #: and between which it goes at nearly 
 def _pusher():
     around = path("hoecken", "P", theta2=FINE, r2=RAKE)
     level = path("hoecken", "P", theta2=LEVEL, r2=RAKE)
-    speed = abs(solved("hoecken", "v_P_x", theta2=STEADY, r2=RAKE))
+    speed = abs(solved("hoecken", "v_P_x", theta2=STEADY, r2=RAKE, omega2=4.0))
     return {
         "pusher_r2": f"{RAKE:.0f}",
         "design_r2": f"{300 * RAKE / np.ptp(level.real):.1f}",

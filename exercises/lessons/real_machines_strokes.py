@@ -30,6 +30,7 @@ from ._machines import (
 # ------------------------------------------------------------------ shaper
 
 SHAPER = {"r2": 100.0, "omega2": 6.0}
+NEEDLE = 100.0  #: speed of the sewing machine's shaft, rad/s
 SHAPER_AT = 35.0
 
 
@@ -308,7 +309,7 @@ NAMELESS = (
     ("digger_arm", {}),
     ("shaper", {"r2": 90.0, "theta2": 60.0}),
     ("class_three", {}),
-    ("jansen_leg", {}),
+    ("jansen_leg", {"theta2": 65.0}),
     ("peaucellier", {"theta2": 25.0}),
 )
 
@@ -358,14 +359,14 @@ def _shaper():
 
 
 def _needle():
-    found = solved("needle_bar", ("x", "x_dot", "x_ddot", "yP"), theta2=FINE)
+    found = solved("needle_bar", ("x", "x_dot", "x_ddot", "yP"), theta2=FINE, omega2=NEEDLE)
     down, eye = found["x"], found["yP"]
     inside = -down - POINT < PLATE
     late = (FINE[eye.argmin()] - FINE[down.argmax()]) % 360
     return {
         **given("needle", "needle_bar", "r2", "r3", "OF"),
         "needle_stroke": f"{np.ptp(down):.0f}",
-        "needle_turns": f"{data('needle_bar')['omega2'] * 60 / (2 * np.pi):.0f}",
+        "needle_turns": f"{NEEDLE * 60 / (2 * np.pi):.0f}",
         "needle_share": f"{100 * inside.mean():.0f}",
         "needle_speed": f"{abs(found['x_dot']).max() / 1000:.2f}",
         "needle_low": f"{abs(found['x_ddot'][down.argmax()]) / 1000:.0f}",
