@@ -60,6 +60,7 @@ class DrawnPiece:
     stills: tuple[str, ...] = ()
     tall: float = 0.0  #: mm that it may take on paper; as any other unless told
     number: str = ""  #: 3.4: the fourth figure of the third lesson; empty in an example and in an answer
+    example: str = ""  #: Example 3.2: that which it poses, if it is the first drawing of one
     on_paper: bool = (
         True  #: whether paper shows it too; what moves beside its own picture does not, and has no number
     )

@@ -51,7 +51,7 @@ def person_name(row: Mapping[str, Any], lang: str) -> str:
 def person_entry(row: Mapping[str, Any], lang: str) -> str:
     """Return the entry of a person, the family name first."""
     given, _, family = person_name(row, lang).rpartition(" ")
-    return f"{family}, {given}"
+    return f"{family}, {given}" if given else family
 
 
 def see_entries(folder: Folder, lang: str) -> tuple[SeeEntry, ...]:

@@ -106,10 +106,16 @@ def _glossary(folder: Folder, stated: Mapping[str, Any], lang: str) -> tuple[Pie
 def _people(folder: Folder, stated: Mapping[str, Any], lang: str) -> tuple[Piece, ...]:
     people = sorted(stated["people"], key=lambda row: bare_letters(person_entry(row, lang)))
     lines = (
-        f'- **[{person_name(row, lang)}](#word "{person_entry(row, lang)}")** ({row["years"]}). {_capital(row[lang])}'
+        f'- **[{person_name(row, lang)}](#word "{person_entry(row, lang)}")** ({_years(row, lang)}). {_capital(row[lang])}'
         for row in people
     )
     return (ProsePiece("\n".join(lines)),)
+
+
+def _years(row: Mapping[str, Any], lang: str) -> str:
+    """Return the years of a person: the same words in all languages, or some in each."""
+    years = row["years"]
+    return str(years[lang] if isinstance(years, Mapping) else years)
 
 
 def _capital(text: str) -> str:

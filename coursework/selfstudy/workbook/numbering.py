@@ -101,9 +101,12 @@ class LessonNumbers:
         return replace(piece, number=self._next("figure")) if piece.on_paper else piece
 
     def example(self, pieces: Sequence[Piece]) -> Iterator[Piece]:
-        """Yield the pieces of a worked example; its head has its number."""
+        """Yield the pieces of a worked example; its head has its number, and its first drawing names it."""
         head = words(self._lang)["lesson"]["example"].format(self._next("example"))
+        named = head.rstrip(".")
         for piece in pieces:
+            if named and isinstance(piece, DrawnPiece):
+                piece, named = replace(piece, example=named), ""
             if head and isinstance(piece, ProsePiece):  # the first one poses the example
                 piece, head = ProsePiece(f"**{head} {piece.text.removeprefix('**')}"), ""
             yield piece

@@ -84,6 +84,32 @@ def test_the_index_has_four_hundred_entries_and_references_lead_to_them(course):
     assert faults == []
 
 
+#: A word with a capital inside a French sentence is the name of a person: nothing else has one there, but for these.
+NAMED = re.compile(r"(?:(?<=[a-zéèà,;’'] )|(?<=\b[dDlL]['’]))[A-ZÉ][a-zéèçïü]{2,}\b(?!-)")
+NO_PERSONS = {"Malte"}
+CODE = re.compile(r"```(?:python|text).*?```|\{\{.*?\}\}|\{%.*?%\}|\$[^$]*\$", re.DOTALL)
+TEXTS = ("lessons/*.fr.md", "book/*.fr.md", "*/*.fr.md.j2", "../solutions/*/*.fr.md.j2")
+
+
+def french_texts(folder):
+    """Each French text of the course: of lessons, pages, statements, solutions, tables."""
+    exercises = folder.lesson_place.parent
+    for path in (path for pattern in TEXTS for path in exercises.glob(pattern)):
+        yield path.name, CODE.sub("", path.read_text("utf-8"))
+    for name in ("glossary", "machines", "summaries", "true_or_false", "boxes", "notation"):
+        told = (folder.book_place / f"{name}.toml").read_text("utf-8")
+        yield name, "\n".join(re.findall(r'fr = (".*?"|\[.*?\])', told))
+
+
+def test_each_person_whom_a_text_names_has_a_line_with_years(course):
+    people = course.folder.book_table("people")["people"]
+    known = " ".join(row.get("full_in", {}).get("fr", row["full"]) + f" {row['name']}" for row in people)
+    names = {(name[0], file) for file, text in french_texts(course.folder) for name in NAMED.finditer(text)}
+    assert len({name for name, _ in names}) > 20
+    assert {(n, file) for n, file in names if n not in NO_PERSONS and n not in known} == set()
+    assert [row["name"] for row in people if not row["years"]] == []
+
+
 def test_the_pages_of_the_book_are_there_in_every_language(course):
     folder = course.folder
     parts = {
