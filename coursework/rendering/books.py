@@ -89,8 +89,8 @@ def _of_book(book: Book) -> dict[str, Any]:
 
 def _exercise(env: Environment, exercise: BookExercise, whose: str, end: str) -> dict[str, Any]:
     """Return the variables for the template of an exercise: its body, and that of its solution. ``whose`` stands above what was
-    moved to the next page."""
-    names = views.context(exercise.handout, 1, numbered=False) | {"whose": whose}
+    moved to the next page, where a question may stand alone as the text goes on after it."""
+    names = views.context(exercise.handout, 1, numbered=False) | {"whose": whose, "together": 1}
     names["body"] = Markup(render(env, f"sheet/_body.{end}", names))
     solved = views.context(exercise.solution, 1, numbered=False)
     names["solution_body"] = Markup(render(env, f"sheet/_solution_body.{end}", solved))

@@ -161,10 +161,11 @@ def compile_settled(typst_source: str, folders: Sequence[Path] = ()) -> bytes:
 
     Where blocks move is chosen from a layout, and moves what comes after. In a long document the layouts do not settle
     within the typesetter's attempts, and page numbers would be those of the layout before: then the last choices are kept.
+
+    Raises BadStatement as :func:`compile_pdf` does, and where page numbers do not settle though no block moves any more.
     """
     counter = count(1)
     numbered = _MOVING.sub(lambda call: f'{call[0]}number: "{next(counter)}", ', drawn(typst_source, folders))
-    document = b""
     with _complaints():
         for _ in range(_LAYOUTS):
             written = files(numbered)
@@ -173,10 +174,13 @@ def compile_settled(typst_source: str, folders: Sequence[Path] = ()) -> bytes:
             chosen = json.loads(compiler.query("<chosen>", field="value"))
             document, warnings = compiler.compile_with_warnings(input=written, **_TAGGED)
             if not any("converge" in str(warning) for warning in warnings):
-                break
+                return document
             settled = "".join(f'"{k}": ({str(kept).lower()}, {left:.3f}mm), ' for k, kept, left in chosen)
             numbered = _SETTLED.sub(f"#let settled = ({settled})", numbered)
-    return document
+    raise BadStatement(
+        f"the pages do not settle after {_LAYOUTS} layouts, so references would name wrong pages; change what moves"
+        " about: the last figures of a chapter, or a template of the course"
+    )
 
 
 def compile_pictures(typst_source: str, folders: Sequence[Path], ppi: float) -> list[bytes]:

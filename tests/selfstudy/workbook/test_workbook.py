@@ -12,6 +12,7 @@ from urllib.parse import unquote_to_bytes
 
 import nbformat
 import pytest
+from pdf_links import wrong_references
 from pdf_text import page_texts
 
 import coursework
@@ -179,7 +180,10 @@ def test_a_lesson_leaves_nothing_behind(small, tmp_path, monkeypatch):
 
 
 def test_the_pdf_has_contents_lessons_exercises_solutions_and_an_index(small):
-    text = page_texts(made(small, formats=["pdf"])["workbook.en.pdf"])
+    pdf = made(small, formats=["pdf"])["workbook.en.pdf"]
+    wrong, count = wrong_references(pdf)
+    assert (wrong, count > 1) == ([], True)
+    text = page_texts(pdf)
     whole = "".join("".join(text).split())
     assert "Contents" in text[1]
     for part in (
