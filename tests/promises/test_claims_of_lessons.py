@@ -426,3 +426,98 @@ def a_rod_shorter_than_the_rocker_comes_upright(course):
     roots = np.roots([1, -2 * r4 * np.cos(theta4), r4**2 - r5**2])
     assert np.ptp(roots.real) < 1e-3
     assert r4 * np.cos(theta4) == pytest.approx(roots[0].real), "B is straight above P"
+
+
+# -- conditions, bounds and counts of other lessons --------------------------------------------------------
+
+
+@claim(
+    "accelerations",
+    "If it outweighs $s$, as in a quick lift",
+    "S'il l'emporte sur $s$, comme dans une levée rapide",
+)
+def a_cam_is_most_curved_at_its_top_in_a_quick_lift_alone(course):
+    u = np.linspace(0, 1, 2001)
+    lift, second = u - np.sin(2 * np.pi * u) / (2 * np.pi), 2 * np.pi * np.sin(2 * np.pi * u)  # cycloidal
+    for beta, at_the_top in ((np.radians(90), True), (np.radians(180), False)):
+        curved = lift + second / beta**2  # less than 0: more than the base circle is
+        assert (second[curved.argmin()] < 0 and curved.min() < 0) == at_the_top
+
+
+@claim("positions", "where $A$ comes to lie on $C$", "si $A$ y vient sur $C$")
+def the_circles_of_a_folded_kite_coincide(course):
+    kite = {"r1": 100.0, "r2": 100.0, "r3": 70.0, "r4": 70.0, "theta2": 0.0}
+    found = course["four_bar_positions"].solve(**kite, only=("a", "b", "c"))
+    assert list(found.values()) == [0, 0, 0], "any direction of the coupler"
+
+
+@claim(
+    "grashof_and_coupler_curves",
+    "the velocity along the line varies by no more than an eighth",
+    "la vitesse le long de la droite ne varie pas de plus d'un huitième",
+)
+def the_pusher_of_hoecken_is_nearly_straight_and_nearly_uniform(course):
+    theta2 = np.linspace(80, 280, 2001)
+    bars = {"r1": 2.0, "r2": 1.0, "r3": 2.5, "r4": 2.5}
+    theta3 = course["four_bar_positions"].solve(**bars, theta2=theta2, only="theta3_open")["theta3_open"]
+    P = np.exp(1j * np.radians(theta2)) + 5 * np.exp(1j * np.radians(theta3))
+    assert np.ptp(P.imag) < 0.0101
+    assert np.ptp(P.real) > 4
+    speed = abs(np.gradient(P.real, theta2))[(theta2 >= 105) & (theta2 <= 255)]
+    assert np.ptp(speed) / speed.max() < 1 / 8
+
+
+@claim("real_machines_levers", "No other lengths help", "Aucune autre longueur n'y remédie")
+def with_equal_times_the_least_transmission_angle_is_bounded_by_the_swing(course):
+    half = np.radians(55.0)
+    for r4, r1 in product(np.linspace(20, 80, 13), np.linspace(60, 900, 29)):
+        r2 = r4 * np.sin(half)
+        if r1 <= r4:
+            continue
+        r3 = np.sqrt(r1**2 + r2**2 - r4**2)
+        least = np.degrees(np.arccos((r3**2 + r4**2 - (r1 - r2) ** 2) / (2 * r3 * r4)))
+        assert least < 35.0
+
+
+@claim(
+    "real_machines_strokes", r"$\lambda/(1 - \lambda) = \num{6.5}$", r"$\lambda/(1 - \lambda) = \num{6.5}$"
+)
+def a_cross_of_three_slots_is_driven_for_a_sixth_of_the_turn_and_fast(course):
+    ratio = np.sin(np.radians(60.0))
+    theta = np.linspace(-90, 90, 180001)
+    psi = np.degrees(np.arctan2(ratio * np.sin(np.radians(theta)), 1 - ratio * np.cos(np.radians(theta))))
+    rates = np.gradient(psi, theta)
+    assert round(rates.max(), 1) == 6.5
+    assert (rates > 0).mean() * 180 == pytest.approx(60, abs=0.1), (
+        "the slot is tangent to the circle at both ends"
+    )
+
+
+@claim(
+    "chains_of_bodies", "In the place of the prismatic joint it does not", "À la place de la glissière, non"
+)
+def a_slider_crank_in_space_becomes_isostatic_by_the_right_joints_alone(course):
+    def counted(*kinds):
+        places = ((0, 0, 0), (30, 40, 0), (120, 0, 0), (120, 0, 0))
+        axes = ((0, 0, 1),) * 3 + ((1, 0, 0),)
+        joints = [
+            {"joint": kind, "axis": axis, "normal": axis, "point": place, "between": (k, (k + 1) % 4)}
+            for k, (kind, axis, place) in enumerate(zip(kinds, axes, places, strict=True))
+        ]
+        chain = Chain(joints, inputs=1, outputs=3)
+        return chain.m, chain.h
+
+    assert counted("revolute", "revolute", "revolute", "prismatic") == (1, 3)
+    assert counted("revolute", "revolute", "spherical", "prismatic") == (1, 1)
+    assert counted("revolute", "cylindrical", "spherical", "prismatic") == (1, 0)
+    assert counted("revolute", "revolute", "spherical", "cylindrical") == (2, 1)
+
+
+@claim("rolling", "is a multiple of 3, so if $z_s$ is.", "est un multiple de 3, donc si $z_p$ en est un")
+def three_planets_fit_at_equal_angles_where_the_teeth_of_sun_and_ring_add_up_to_a_multiple_of_3(course):
+    def fits(sun, ring):
+        """A planet that goes to the next place meets the teeth of both wheels as the one before did."""
+        turned = 360 / 3 * (1 + ring / sun)  # of the sun while the carrier makes a third of a turn
+        return abs(turned / (360 / sun) - round(turned / (360 / sun))) < 1e-9
+
+    assert [fits(sun, 3 * sun) for sun in (18, 20, 21, 22)] == [True, False, True, False]
