@@ -84,29 +84,33 @@ def test_the_index_has_four_hundred_entries_and_references_lead_to_them(course):
     assert faults == []
 
 
-#: A word with a capital inside a French sentence is the name of a person: nothing else has one there, but for these.
-NAMED = re.compile(r"(?:(?<=[a-zéèà,;’'] )|(?<=\b[dDlL]['’]))[A-ZÉ][a-zéèçïü]{2,}\b(?!-)")
-NO_PERSONS = {"Malte"}
+#: A word with a capital inside a sentence, or with an English genitive, is the name of a person, but for a few.
+NAMED = re.compile(
+    r"(?:(?<=[a-zéèà,;’'] )|(?<=\b[dDlL]['’]))[A-ZÉ][a-zéèçïü]{2,}\b(?!-)|\b[A-Z][a-zü]{3,}(?='s )"
+)
+NO_PERSONS = {"Malte", "Maltese", "Scotch", "French"}
 CODE = re.compile(r"```(?:python|text).*?```|\{\{.*?\}\}|\{%.*?%\}|\$[^$]*\$", re.DOTALL)
-TEXTS = ("lessons/*.fr.md", "book/*.fr.md", "*/*.fr.md.j2", "../solutions/*/*.fr.md.j2")
+TEXTS = ("lessons/*.{}.md", "book/*.{}.md", "*/*.{}.md.j2", "../solutions/*/*.{}.md.j2")
 
 
-def french_texts(folder):
-    """Each French text of the course: of lessons, pages, statements, solutions, tables."""
+def texts_in(folder, lang):
+    """Each text of the course in a language: of lessons, pages, statements, solutions, tables."""
     exercises = folder.lesson_place.parent
-    for path in (path for pattern in TEXTS for path in exercises.glob(pattern)):
+    for path in (path for pattern in TEXTS for path in exercises.glob(pattern.format(lang))):
         yield path.name, CODE.sub("", path.read_text("utf-8"))
     for name in ("glossary", "machines", "summaries", "true_or_false", "boxes", "notation"):
         told = (folder.book_place / f"{name}.toml").read_text("utf-8")
-        yield name, "\n".join(re.findall(r'fr = (".*?"|\[.*?\])', told))
+        yield name, "\n".join(re.findall(lang + r' = (".*?"|\[.*?\])', told))
 
 
 def test_each_person_whom_a_text_names_has_a_line_with_years(course):
     people = course.folder.book_table("people")["people"]
-    known = " ".join(row.get("full_in", {}).get("fr", row["full"]) + f" {row['name']}" for row in people)
-    names = {(name[0], file) for file, text in french_texts(course.folder) for name in NAMED.finditer(text)}
-    assert len({name for name, _ in names}) > 20
-    assert {(n, file) for n, file in names if n not in NO_PERSONS and n not in known} == set()
+    known = " ".join(str([row.get(key) for key in ("name", "full", "full_in", "alias")]) for row in people)
+    for lang in course.folder.languages:
+        texts = texts_in(course.folder, lang)
+        names = {(name[0], file) for file, text in texts for name in NAMED.finditer(text)}
+        assert len({name for name, _ in names}) > 20
+        assert {(n, file) for n, file in names if n not in NO_PERSONS and n not in known} == set()
     assert [row["name"] for row in people if not row["years"]] == []
 
 
