@@ -26,8 +26,10 @@ from coursework.sheets.book import (
     BookChapter,
     BookExercise,
     DrawnPiece,
+    HeadPiece,
     LessonText,
     Piece,
+    ProsePiece,
 )
 from coursework.sheets.paper import Paper, PaperHeading, SolutionPaper
 
@@ -116,7 +118,7 @@ def _typst_pieces(
 
     names = _of_book(book) | {
         "lesson": lesson,
-        "pieces": [_with_kind(piece) for piece in pieces if _is_printed(piece)],
+        "pieces": list(map(_with_kind, _text_first(filter(_is_printed, pieces)))),
         "tall": _TALL,
         "floats": floats,
     }
@@ -127,6 +129,27 @@ def _typst_pieces(
 def _is_printed(piece: Piece) -> bool:
     """Return whether paper shows a piece."""
     return piece.on_paper if isinstance(piece, DrawnPiece) else not isinstance(piece, BlanksPiece)
+
+
+def _text_first(pieces: Iterable[Piece]) -> Iterator[Piece]:
+    """Yield the pieces, and where a drawing follows a heading at once, the first paragraph between the two: the drawing may go to
+    the next page, and would take the heading with it."""
+    head: Piece | None = None
+    drawn: list[Piece] = []
+    for piece in pieces:
+        if isinstance(piece, DrawnPiece) and isinstance(head, HeadPiece):
+            drawn.append(piece)
+            continue
+        if drawn and isinstance(piece, ProsePiece):
+            first, _, rest = piece.text.strip("\n").partition("\n\n")
+            if not first.endswith(":"):
+                yield ProsePiece(first)
+                piece = ProsePiece(rest)
+        yield from drawn
+        head, drawn = piece, []
+        if getattr(piece, "text", None) != "":
+            yield piece
+    yield from drawn
 
 
 def _cited(book: Book, lesson: LessonText, link: TextLink, number: str) -> str:
