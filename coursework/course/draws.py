@@ -23,6 +23,7 @@ import numpy as np
 
 from coursework.course.secrecy import Secret
 from coursework.errors import BadCourse, CourseworkError, MissingQuantity, Starved, nearest
+from coursework.messages import Message
 from coursework.model import Bound, Detectable, Exercise, GivenSpec, Part
 from coursework.quantities.graph import Graph
 
@@ -320,11 +321,26 @@ class Draws:
                 values=", ".join(f"{name} = {value}" for name, value in stated.items()),
                 constraints=", ".join(name for name, count in refusals.most_common(3) if count),
             )
-        worst = ", ".join(f"{name} ({count} times)" for name, count in refusals.most_common(3) if count)
+        worst = [
+            Message("{constraint} ({count} times)", constraint=self._said(name), count=count)
+            for name, count in refusals.most_common(3)
+            if count
+        ]
         return Starved(
-            f"{self.name}: seed {seed} found no variant in {len(words)} draws; refused by {worst}; "
-            "widen a range or relax the constraint"
+            "{exercise}: seed {seed} found no variant in {draws} draws; refused by {worst}; widen a range or relax the constraint",
+            exercise=self.name,
+            seed=seed,
+            draws=len(words),
+            worst=Message(
+                ", ".join(f"{{w{k}}}" for k in range(len(worst))), **{f"w{k}": w for k, w in enumerate(worst)}
+            ),
         )
+
+    def _said(self, constraint: str) -> str:
+        """Return a constraint as messages name it: the condition that a mechanism's file states, or its name."""
+        stated = next((c for c in self.spec.constraints if getattr(c, "__name__", "") == constraint), None)
+        said = getattr(stated, "said", "")
+        return Message(said) if said else constraint
 
     def acceptance(self, count: int = 4096) -> float:
         """Return the share of candidates that are variants."""

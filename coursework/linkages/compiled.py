@@ -210,7 +210,7 @@ class CompiledLinkage:
             except CourseworkError as fault:
                 raise linkage.refused(("given", "require"), fault.args[0]) from fault
             name = f"required_{number + 1}"
-            results.append(_condition(name, found.code))
+            results.append(_condition(name, found.code, text))
         if any("crank_turns" in code for _, code in results):
             leaves = [n for n in self._leaves(self.formulas.followed_turns) if n != linkage.moved]
             graph = "".join(f"{q.name}, " for q in formulas.transitive(self.formulas.followed_turns))
@@ -615,8 +615,10 @@ def _plain(quantity: Quantity) -> str:
     return f"def {quantity.name}({', '.join(quantity.needs)}):\n    return {quantity.code}"
 
 
-def _condition(name: str, code: str) -> tuple[str, str]:
-    return name, f"def {name}({', '.join(names_in(code))}):\n    return {code}"
+def _condition(name: str, code: str, said: str = "") -> tuple[str, str]:
+    """Return a constraint as code; ``said`` is what messages call it, else the words of its name."""
+    function = f"def {name}({', '.join(names_in(code))}):\n    return {code}"
+    return name, f"{function}\n\n\n{name}.said = {said or name.replace('_', ' ')!r}"
 
 
 def _given(entry: GivenEntry) -> str:

@@ -6,15 +6,16 @@ import ast
 import math
 import operator
 import re
-from collections.abc import Callable, Collection, Mapping
-from dataclasses import dataclass
+from collections.abc import Callable, Collection, Mapping, Sequence
+from dataclasses import dataclass, replace
+from fractions import Fraction
 
 import numpy as np
 
 from coursework.degrees import acos, asin, atan2, cos, sin, sqrt, tan
-from coursework.errors import WrongUnit, WrongValue, nearest
+from coursework.errors import WrongValue, nearest
 from coursework.messages import Message
-from coursework.parsing.units import Unit, convert, find_unit, parse_unit
+from coursework.parsing.units import Unit, convert, find_unit, parse_unit, product, same_dimension
 
 FUNCTIONS = ("sin", "cos", "tan", "sqrt", "abs", "asin", "acos", "atan2", "hypot", "min", "max")
 DEGREES = {f.__name__: f for f in (sin, cos, tan, asin, acos, atan2, sqrt)}  #: of code without quantities
@@ -22,8 +23,11 @@ _ARGUMENTS = {"atan2": 2, "hypot": 2, "min": 2, "max": 2}  #: of functions that 
 _MOST_POWER, _DEEPEST, _LARGEST = 9, 40, 1e12
 _IN_CODE = {"min": "np.minimum", "max": "np.maximum", "hypot": "np.hypot"}
 _LITERAL = re.compile(
-    r"(?<![\w.])(\d+(?:\.\d+)?(?:[eE][+-]?\d+)?)\s*([A-Za-zµ°][A-Za-z°²³]*(?:[*/^][A-Za-z0-9²³]+)*)"
+    r"(?<![\w.])(\d+(?:\.\d+)?(?:[eE][+-]?\d+)?)\s*([A-Za-zµ°][A-Za-z°²³]*(?:[*/^][A-Za-z0-9²³]+)*)(?!\w)"
 )
+_SHARE = re.compile(
+    r"[*/^][A-Za-z0-9²³]+\Z"
+)  #: the last factor of what may be a unit, or a unit and a quantity
 _OPERATORS: Mapping[type, str] = {ast.Add: "+", ast.Sub: "-", ast.Mult: "*", ast.Div: "/", ast.Pow: "**"}
 _ARITHMETIC: Mapping[type, Callable[[float, float], float]] = {
     ast.Add: operator.add, ast.Sub: operator.sub, ast.Mult: operator.mul, ast.Div: operator.truediv, ast.Pow: math.pow,
@@ -142,27 +146,56 @@ def amount(text: object, unit: str) -> float:
     return float(convert(value, parse_unit(match[2]), unit))
 
 
-def unit_of(text: object) -> str:
-    """Return the unit that a number is written with; ``"1"`` for none.
-
-    Raises
-    ------
-    WrongUnit
-        It is no unit.
-    """
-    _refuse_comma(text)
-    match = re.fullmatch(r"\s*[+-]?\d+(?:\.\d+)?(?:[eE][+-]?\d+)?\s*(.*?)\s*", str(text))
-    if match is None or not match[1]:
-        return "1"
-    return canonical(parse_unit(match[1]))
+CANONICAL = ("mm", "deg", "rad/s", "rad/s^2", "mm/s", "mm/s^2", "N*m", "N", "kg", "kg*m^2", "s", "1")
+PLAIN = parse_unit("1")
+_BASES = (
+    "mm",
+    "kg",
+    "s",
+    "rad",
+    "A",
+    "Hz",
+    "K",
+    "mol",
+    "cd",
+    "dB",
+)  #: a unit of each dimension, as messages name it
 
 
 def canonical(unit: Unit) -> str:
     """Return the unit in which the course has quantities of this dimension; the unit itself for any other."""
-    for text in ("mm", "deg", "rad/s", "rad/s^2", "mm/s", "mm/s^2", "N*m", "N", "kg", "kg*m^2", "s", "1"):
+    for text in CANONICAL:
         if parse_unit(text).dimension == unit.dimension:
             return text
     return unit.text
+
+
+@dataclass(frozen=True)
+class _Read:
+    """Piece of an expression that was read: code over quantities in their canonical units, and the unit of its value."""
+
+    code: str
+    names: tuple[str, ...] = ()
+    unit: Unit = PLAIN
+
+    @property
+    def is_plain(self) -> bool:
+        return not any(self.unit.dimension)
+
+    @property
+    def text(self) -> str:
+        """The piece as messages quote it."""
+        code = self.code.replace("np.", "").replace("**", "^")
+        return code if self.is_plain or _number(code) is None else f"{code} {_spelled(self.unit)}"
+
+    def in_unit(self, unit: Unit | str) -> str:
+        """Return the code of the value in another unit of its dimension."""
+        factor = float(convert(1.0, self.unit, unit))
+        if factor == 1:
+            return self.code
+        if (number := _number(self.code)) is not None:
+            return _written(float(convert(number, self.unit, unit)))
+        return f"{factor:.15g} * {_bracketed(self.code)}"
 
 
 class ExpressionReader:
@@ -205,22 +238,36 @@ class ExpressionReader:
         if isinstance(text, (int, float)) and not isinstance(text, bool):
             return QuantityExpression(f"{amount(text, unit):.15g}")
         tree, literals = self._tree(text)
-        code, names, found = self._of(tree, literals)
-        if found is not None and not _alike(found, unit):
-            number = _number(code)
-            if number is not None and found == "1":
+        found = self._of(tree, literals)
+        if not same_dimension(found.unit, unit):
+            number = _number(found.code)
+            if number is not None and found.is_plain:
                 if number == 0:
                     return ZERO
                 raise WrongValue(Message('a unit is missing: "{number:g} {unit}"', number=number, unit=unit))
             raise WrongValue(
                 Message(
-                    "{text} is in {found}, where a value in {unit} stands",
+                    "{text} is {found}, where a value {unit} stands",
                     text=repr(text),
-                    found=_shown(found),
-                    unit=unit,
+                    found=_shown(found.unit),
+                    unit=_shown(unit),
                 )
             )
-        return QuantityExpression(code, names) if names else QuantityExpression(_value(code))
+        code = found.in_unit(unit)
+        return QuantityExpression(code, found.names) if found.names else QuantityExpression(_value(code))
+
+    def unit(self, text: object) -> str:
+        """Return the canonical unit of an expression; ``"1"`` for a plain number.
+
+        Raises
+        ------
+        WrongValue
+            It cannot be read, or names no quantity.
+        """
+        if isinstance(text, (int, float)) and not isinstance(text, bool):
+            return "1"
+        _refuse_comma(text)
+        return _spelled(self._of(*self._tree(text)).unit)
 
     def condition(self, text: object) -> QuantityExpression:
         """Read a condition: comparisons and calls, joined by ``and`` and ``or``.
@@ -240,61 +287,92 @@ class ExpressionReader:
         literals: dict[str, tuple[float, str]] = {}
 
         def literal(match: re.Match[str]) -> str:
-            unit = find_unit(match[2])
-            if unit is None:
-                return match[0]
+            spelled = self._unit_beside(match[2])
+            if find_unit(spelled) is None:
+                self._refuse_product(match[0])
+            unit = parse_unit(spelled)
             name = f"_literal{len(literals)}"
             home = canonical(unit)
             literals[name] = float(convert(float(_written(float(match[1]))), unit, home)), home
-            return name
+            return name + match[2][len(spelled) :]
 
+        plain = _LITERAL.sub(literal, text).replace("^", "**").strip()
         try:
-            tree = ast.parse(_LITERAL.sub(literal, text).replace("^", "**").strip(), mode="eval").body
+            tree = ast.parse(plain, mode="eval").body
         except (SyntaxError, ValueError, RecursionError):
+            self._refuse_product(text)
             raise WrongValue(Message("{text} is no expression", text=repr(text))) from None
         if _depth(tree) > _DEEPEST:
             raise WrongValue(Message("{text} is nested too deep", text=repr(text)))
         return tree, literals
 
-    def _of(
-        self, node: ast.expr, literals: Mapping[str, tuple[float, str]]
-    ) -> tuple[str, tuple[str, ...], str | None]:
-        """Return the code, the names, and the unit of a tree; None for a unit that is not followed."""
+    def _refuse_product(self, text: str) -> None:
+        """Refuse a number beside a quantity, without the sign of a product."""
+        for number, name in re.findall(r"(?<![\w.])(\d+(?:\.\d+)?)\s*([A-Za-z]\w*)", text):
+            if name in self.units:
+                right = repr(f"{number} * {name}")
+                raise WrongValue(
+                    Message("a product has its sign: {right}; found {text}", right=right, text=repr(text))
+                )
+
+    def _unit_beside(self, text: str) -> str:
+        """Return what of a text is the unit of the number before it: ``mm`` of ``mm*k``, where k is a quantity."""
+        named = any(name in self.units for name in re.findall(r"[A-Za-z]\w*", text)[1:])
+        unit = find_unit(text)
+        if unit is not None and (not named or canonical(unit) in CANONICAL):
+            return text
+        shorter = text
+        while _SHARE.search(shorter):
+            shorter = _SHARE.sub("", shorter)
+            if find_unit(shorter) is not None:
+                return shorter
+        return text
+
+    def _of(self, node: ast.expr, literals: Mapping[str, tuple[float, str]]) -> _Read:
+        """Return the code of a tree, with its names and its unit."""
         match node:
             case ast.Constant(value=value) if isinstance(value, (int, float)) and not isinstance(value, bool):
-                return _written(value), (), "1"
+                return _Read(_written(value))
             case ast.Name(id=name) if name in literals:
-                return f"{literals[name][0]:.15g}", (), literals[name][1]
+                return _Read(f"{literals[name][0]:.15g}", (), parse_unit(literals[name][1]))
+            case ast.Name(id="pi"):
+                return _Read("np.pi")
             case ast.Name(id=name):
-                if name == "pi":
-                    return "np.pi", (), "1"
                 if name not in self.units:
+                    if name.isalpha() and find_unit(name) is not None:
+                        raise WrongValue(
+                            Message('{name!r} is a unit, which stands beside a number: "5 {name}"', name=name)
+                        )
                     raise WrongValue(
                         Message("no quantity {name!r}{near}", name=name, near=nearest(name, self.units))
                     )
-                return name, (name,), self.units[name]
+                return _Read(name, (name,), parse_unit(self.units[name]))
             case ast.UnaryOp(op=ast.USub(), operand=operand):
-                code, names, unit = self._of(operand, literals)
-                return f"-{_bracketed(code)}", names, unit
+                read = self._of(operand, literals)
+                return replace(read, code=f"-{_bracketed(read.code)}")
             case ast.BinOp(left=left, op=op, right=right) if type(op) in _OPERATORS:
                 first, second = self._of(left, literals), self._of(right, literals)
-                if isinstance(op, ast.Pow):
-                    self._check_power(node, second[0])
-                code = f"{_bracketed(first[0])} {_OPERATORS[type(op)]} {_bracketed(second[0])}"
-                if (one := _number(first[0])) is not None and (other := _number(second[0])) is not None:
+                unit = PLAIN
+                match op:
+                    case ast.Pow():
+                        unit = self._power(node, first, second.code)
+                    case ast.Add() | ast.Sub():
+                        first, second = _alike(
+                            (first, second), "{first} is {one}, {second} {other}: they do not add up"
+                        )
+                        unit = first.unit
+                    case _:
+                        unit = product(first.unit, second.unit, 1 if isinstance(op, ast.Mult) else -1)
+                code = f"{_bracketed(first.code)} {_OPERATORS[type(op)]} {_bracketed(second.code)}"
+                if (one := _number(first.code)) is not None and (other := _number(second.code)) is not None:
                     code = self._folded(node, op, one, other)
-                return code, _joined(first[1], second[1]), self._combined(op, first, second)
+                return _Read(code, _joined(first.names, second.names), unit)
             case ast.Call(func=ast.Name(id=name), args=arguments, keywords=[]) if name in FUNCTIONS:
                 if len(arguments) != _ARGUMENTS.get(name, 1):
                     raise WrongValue(
                         Message("{name} takes {count} values", name=name, count=_ARGUMENTS.get(name, 1))
                     )
-                read = [self._of(a, literals) for a in arguments]
-                code = f"{_IN_CODE.get(name, name)}({', '.join(r[0] for r in read)})"
-                unit = {"atan2": "deg", "asin": "deg", "acos": "deg", "sqrt": None}.get(
-                    name, read[0][2] if read and name in ("abs", "hypot", "min", "max") else "1"
-                )
-                return code, _joined(*(r[1] for r in read)), unit
+                return _called(name, [self._of(a, literals) for a in arguments])
         raise WrongValue(
             Message(
                 "an expression has names, numbers with units, + - * / ** and {functions}; found {found}",
@@ -302,6 +380,22 @@ class ExpressionReader:
                 found=ast.unparse(node),
             )
         )
+
+    def _power(self, node: ast.BinOp, base: _Read, exponent: str) -> Unit:
+        """Return the unit of a power."""
+        self._check_power(node, exponent)
+        power = float(exponent)
+        if power == 0.5:
+            return _root(base).unit
+        if power != int(power) and not base.is_plain:
+            raise WrongValue(
+                Message(
+                    "the exponent of a value {unit} is a whole number; found {found}",
+                    unit=_shown(base.unit),
+                    found=exponent,
+                )
+            )
+        return product(PLAIN, base.unit, int(power)) if power == int(power) else PLAIN
 
     @staticmethod
     def _check_power(node: ast.BinOp, exponent: str) -> None:
@@ -325,29 +419,6 @@ class ExpressionReader:
         except (ArithmeticError, ValueError):
             raise WrongValue(Message("{text} has no value", text=ast.unparse(node))) from None
 
-    @staticmethod
-    def _combined(op: ast.operator, first: tuple, second: tuple) -> str | None:
-        if isinstance(op, (ast.Add, ast.Sub)):
-            for one, other in ((first, second), (second, first)):
-                if one[2] is not None and other[2] is not None and not _alike(one[2], other[2]):
-                    if _number(one[0]) == 0:
-                        return other[2]
-                    raise WrongValue(
-                        Message(
-                            "{first} is in {one}, {second} in {other}: they do not add up",
-                            first=first[0],
-                            one=_shown(first[2]),
-                            second=second[0],
-                            other=_shown(second[2]),
-                        )
-                    )
-            return first[2]
-        if isinstance(op, ast.Mult):
-            return first[2] if second[2] == "1" else second[2] if first[2] == "1" else None
-        if isinstance(op, ast.Div):
-            return first[2] if second[2] == "1" else "1" if first[2] == second[2] and first[2] else None
-        return "1" if first[2] == "1" else None
-
     def _condition(
         self, node: ast.expr, literals: Mapping[str, tuple[float, str]], text: str
     ) -> tuple[str, tuple[str, ...]]:
@@ -362,27 +433,15 @@ class ExpressionReader:
             case ast.Compare(left=left, ops=ops, comparators=right) if all(
                 type(op) in _COMPARISONS for op in ops
             ):
-                sides = [self._side(side, literals) for side in (left, *right)]
-                units = [unit for _, _, unit in sides if unit is not None]
-                for code, _, unit in sides:
-                    if (
-                        unit is not None
-                        and not _alike(unit, units[0])
-                        and _number(code) != 0
-                        and _number(sides[0][0]) != 0
-                    ):
-                        raise WrongValue(
-                            Message(
-                                "{text} compares {one} with {other}",
-                                text=repr(text),
-                                one=_shown(units[0]),
-                                other=_shown(unit),
-                            )
-                        )
+                sides = _alike(
+                    [self._side(side, literals) for side in (left, *right)],
+                    "{first} is {one}, {second} {other}: they cannot be compared",
+                )
                 pieces = [
-                    f"({sides[k][0]} {_COMPARISONS[type(op)]} {sides[k + 1][0]})" for k, op in enumerate(ops)
+                    f"({sides[k].code} {_COMPARISONS[type(op)]} {sides[k + 1].code})"
+                    for k, op in enumerate(ops)
                 ]
-                return " & ".join(pieces), _joined(*(names for _, names, _ in sides))
+                return " & ".join(pieces), _joined(*(side.names for side in sides))
             case ast.Call(func=ast.Name(id=name)) if name in self.calls:
                 found = self._called(node)
                 return found.code, found.names
@@ -394,12 +453,10 @@ class ExpressionReader:
             )
         )
 
-    def _side(
-        self, node: ast.expr, literals: Mapping[str, tuple[float, str]]
-    ) -> tuple[str, tuple[str, ...], str | None]:
+    def _side(self, node: ast.expr, literals: Mapping[str, tuple[float, str]]) -> _Read:
         if isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id in self.calls:
             found = self._called(node)
-            return found.code, found.names, "deg"
+            return _Read(found.code, found.names, parse_unit("deg"))
         return self._of(node, literals)
 
     def _called(self, node: ast.Call) -> QuantityExpression:
@@ -423,12 +480,85 @@ def _joined(*several: Collection[str]) -> tuple[str, ...]:
     return tuple(dict.fromkeys(name for names in several for name in names))
 
 
-def _alike(first: str, second: str) -> bool:
-    return parse_unit(first).dimension == parse_unit(second).dimension
+def _alike(several: Sequence[_Read], template: str) -> list[_Read]:
+    """Return values in the unit of the first that is no 0; ``template`` refuses others."""
+    first = next((read for read in several if _number(read.code) != 0), several[0])
+    for read in several:
+        if _number(read.code) != 0 and not same_dimension(read.unit, first.unit):
+            raise WrongValue(
+                Message(
+                    template,
+                    first=first.text,
+                    one=_shown(first.unit),
+                    second=read.text,
+                    other=_shown(read.unit),
+                )
+            )
+    return [
+        replace(
+            read, code=read.code if _number(read.code) == 0 else read.in_unit(first.unit), unit=first.unit
+        )
+        for read in several
+    ]
 
 
-def _shown(unit: str) -> str:
-    return "no unit" if unit == "1" else unit
+def _root(read: _Read) -> _Read:
+    """Return a value whose square root has a unit, and that root's unit."""
+    if any(power % 2 for power in read.unit.dimension):
+        raise WrongValue(
+            Message(
+                "the root of {text}, which is {unit}, has no unit",
+                text=read.text,
+                unit=_shown(read.unit),
+            )
+        )
+    halves = tuple(power // 2 for power in read.unit.dimension)
+    ratio = Fraction(math.isqrt(read.unit.ratio.numerator), math.isqrt(read.unit.ratio.denominator))
+    if ratio**2 == read.unit.ratio and read.unit.pi % 2 == 0:
+        return replace(read, unit=Unit("", ratio, read.unit.pi // 2, halves))
+    base = Unit("", Fraction(1), 0, read.unit.dimension)
+    return replace(read, code=read.in_unit(base), unit=Unit("", Fraction(1), 0, halves))
+
+
+def _called(name: str, read: Sequence[_Read]) -> _Read:
+    """Return a function of values, with its unit."""
+    unit = PLAIN
+    if name in ("sin", "cos", "tan", "asin", "acos"):
+        wanted, form = (
+            ("deg", f"{name}(30 deg)") if name in ("sin", "cos", "tan") else ("1", f"{name}(r2 / r3)")
+        )
+        if not same_dimension(read[0].unit, wanted) and _number(read[0].code) != 0:
+            raise WrongValue(
+                Message(
+                    "{name} takes a value {wanted}, such as {form}; {text} is {found}",
+                    name=name,
+                    wanted=_shown(wanted),
+                    form=form,
+                    text=read[0].text,
+                    found=_shown(read[0].unit),
+                )
+            )
+        read = [read[0] if _number(read[0].code) == 0 else replace(read[0], code=read[0].in_unit(wanted))]
+        unit = parse_unit("1" if wanted == "deg" else "deg")
+    elif name == "sqrt":
+        read = [_root(read[0])]
+        unit = read[0].unit
+    else:
+        read = _alike(read, "{first} is {one}, {second} {other}: they cannot be compared")
+        unit = parse_unit("deg") if name == "atan2" else read[0].unit
+    code = f"{_IN_CODE.get(name, name)}({', '.join(r.code for r in read)})"
+    return _Read(code, _joined(*(r.names for r in read)), unit)
+
+
+def _shown(unit: Unit | str) -> Message:
+    """Return what messages say of a unit."""
+    unit = parse_unit(unit) if isinstance(unit, str) else unit
+    return Message("in {unit}", unit=_spelled(unit)) if any(unit.dimension) else Message("without unit")
+
+
+def _spelled(unit: Unit) -> str:
+    names = [f"{n}^{p}".removesuffix("^1") for n, p in zip(_BASES, unit.dimension, strict=True) if p]
+    return canonical(unit) or "*".join(names)
 
 
 __all__ = [
@@ -436,8 +566,6 @@ __all__ = [
     "ZERO",
     "ExpressionReader",
     "QuantityExpression",
-    "WrongUnit",
     "amount",
     "canonical",
-    "unit_of",
 ]

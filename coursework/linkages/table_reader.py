@@ -10,7 +10,7 @@ from typing import Any
 
 from coursework.errors import BadInput, CourseworkError
 from coursework.linkages.entries import GivenEntry, Place
-from coursework.linkages.expressions import ExpressionReader, QuantityExpression, amount, unit_of
+from coursework.linkages.expressions import ExpressionReader, QuantityExpression, amount
 from coursework.system.toml_files import TomlReader
 
 NAME = re.compile(r"[A-Za-z][A-Za-z0-9]*(?:_[A-Za-z0-9]+)*\Z")
@@ -127,17 +127,28 @@ class TableReader(TomlReader):
         return results
 
     def _entry(self, at: tuple[str, str], name: str, value: Any) -> GivenEntry:
+        reader = ExpressionReader(self.units)
         if not isinstance(value, Mapping):
-            unit = self._checked(at, unit_of, value)
+            unit = self._checked(at, reader.unit, value)
             self._has_unit(at, name, unit, value)
-            return GivenEntry(unit, value=self._checked(at, amount, value, unit))
+            found: QuantityExpression = self._checked(at, reader.read, value, unit)
+            if not found.is_number:
+                raise self.refused(
+                    at,
+                    "{name} is a number with its unit, or a range; what follows from {others} stands where it is used: B = {value}",
+                    name=name,
+                    others=", ".join(found.names),
+                    value=f'"{value}"',
+                )
+            return GivenEntry(unit, value=float(found.code))
         self.only(value, ("from", "to", "step", "nonzero"), at, name)
         if "from" not in value or "to" not in value:
             raise self.refused(
                 at, '{name} is "180 mm", or {{ from = "40 mm", to = "70 mm", step = "5 mm" }}', name=name
             )
-        step = value.get("step", value["from"] if False else None)
-        units = [self._checked(at, unit_of, v) for v in (value["from"], value["to"], step) if _is_amount(v)]
+        step = value.get("step")
+        stated = [v for v in (value["from"], value["to"], step) if v is not None]
+        units = [self._checked(at, reader.unit, v) for v in stated]
         unit = next((u for u in units if u != "1"), "1")
         self._has_unit(at, name, unit, value["from"])
         low, high = (self._expression((*at, key), value[key], unit) for key in ("from", "to"))
@@ -206,7 +217,3 @@ class TableReader(TomlReader):
         raise self.refused(
             at, 'a place is "r2", ["x", "y"] or {{ r = "r5", angle = "beta" }}; found {value!r}', value=value
         )
-
-
-def _is_amount(value: object) -> bool:
-    return re.match(r"\s*[+-]?\d", str(value)) is not None

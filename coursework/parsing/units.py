@@ -23,6 +23,7 @@ from functools import lru_cache
 from typing import Any
 
 from coursework.errors import BadCourse, WrongUnit
+from coursework.messages import Message
 from coursework.parsing.spelling import plain_spelling, shorten
 
 #: What the entries of a dimension count. A cycle is a count (1 Hz is one a second) that is a turn
@@ -40,8 +41,8 @@ _MAX_DECADES = 100
 class UnknownUnit(WrongUnit):
     """A text that is no unit; ``found`` is the piece that is not known."""
 
-    def __init__(self, message: str, piece: str) -> None:
-        super().__init__(message)
+    def __init__(self, template: str, piece: str = "", **values: object) -> None:
+        super().__init__(template, **({"piece": piece, **values} if values else {}))
         self.found = piece
 
 
@@ -220,11 +221,11 @@ def _moment(name: str) -> Unit | None:
     if not newton or force not in _PREFIXES or not arm.endswith("m") or arm[:-1] not in _PREFIXES:
         return None
     decades = _PREFIXES[force] + _PREFIXES[arm[:-1]]
-    return _scaled(_product(_PREFIXED["N"], _PREFIXED["m"], 1), decades)
+    return _scaled(product(_PREFIXED["N"], _PREFIXED["m"], 1), decades)
 
 
-def _product(a: Unit, b: Unit, power: int) -> Unit:
-    """Return ``a * b**power``."""
+def product(a: Unit, b: Unit, power: int) -> Unit:
+    """Return ``a * b**power``, without a text."""
     dimension = tuple(p + power * q for p, q in zip(a.dimension, b.dimension, strict=True))
     return Unit("", a.ratio * b.ratio**power, a.pi + power * b.pi, dimension)
 
@@ -312,7 +313,7 @@ def _chain(tokens: list[tuple[str, int]], text: str, depth: int = 0) -> Unit:
             raise _UnknownPiece("in")  # 12 in mm says a unit, and no inch
         else:
             factor = _named(piece)
-        unit, sign, waiting = _product(unit, factor, sign * power), 1, False
+        unit, sign, waiting = product(unit, factor, sign * power), 1, False
         if abs(unit.pi) + max(map(abs, unit.dimension)) > 4 * _MAX_POWER:
             raise _UnknownPiece(text)
     if waiting:
@@ -374,9 +375,13 @@ def parse_unit(text: str) -> Unit:
         spellings = list(_spellings())
         near = [s for s in spellings if s.casefold() == piece.casefold()]
         near = near or difflib.get_close_matches(piece, spellings, n=1, cutoff=0.5)
-        hint = f"; did you mean {near[0]!r}?" if near else "; units are such as mm, rad/s, N.m, kg.m^2"
-        where = f" in {shorten(text)!r}" if piece != shorten(text) else ""
-        raise UnknownUnit(f"no unit {piece!r}{where}{hint}", piece=piece)
+        hint = (
+            Message("; did you mean {near!r}?", near=near[0])
+            if near
+            else Message("; units are such as mm, rad/s, N.m, kg.m^2")
+        )
+        where = Message(" in {where}", where=repr(shorten(text))) if piece != shorten(text) else ""
+        raise UnknownUnit("no unit {piece!r}{where}{hint}", piece, where=where, hint=hint)
     return unit
 
 
