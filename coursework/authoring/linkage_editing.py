@@ -108,7 +108,8 @@ def questions(made: CompiledLinkage) -> dict[str, list[CheckBox]]:
             c for c in centres if formulas.turns[c[1]] != formulas.turns[c[2]]
         ]  # of bodies that are turned alike it is at infinity
         turning = [b for b in linkage.bodies if formulas.turns[b] in turns]
-        able["advantage"] = ("advantage",) if turning and linkage.drive.kind == "turn" else ()
+        slid = [s for s in linkage.followed_slides if s.on == GROUND]
+        able["advantage"] = ("advantage",) if turning or slid else ()
     return {
         key: [CheckBox(name, _is_asked(linkage.ask, key, name)) for name in names]
         for key, names in able.items()

@@ -393,31 +393,33 @@ class QuestionWriter:
     def _advantage(self, value: Any) -> None:
         self._needs_speed("advantage")
         formulas, linkage = self.formulas, self.linkage
-        self._drives("advantage", "turn")
         turning = [b for b in linkage.bodies if formulas.turns[b].startswith("theta") and b != linkage.driver]
         on_ground = [b for b in turning if any(p in linkage.ground for p in linkage.bodies[b].points)]
-        body = (on_ground or turning)[-1] if value is True and turning else str(value)
-        if body not in turning:
+        slid = [s.distance for s in linkage.followed_slides if s.on == GROUND]
+        able = [*turning, *slid]
+        output = (on_ground or slid or turning or [""])[-1] if value is True else str(value)
+        if output not in able:
             raise linkage.refused(
                 ("ask", "advantage"),
-                "the advantage is that of a body that turns: {found}; found {value!r}",
-                found=", ".join(turning),
+                "the advantage is that of a body that turns, or of a slide on the ground: {found}; found {value!r}",
+                found=", ".join(able),
                 value=value,
             )
-        words = {"body": body, "driver": linkage.driver}
-        formulas.write(
-            "advantage", f"{linkage.speed} / {formulas.omega(body)}", "1", "advantage", "m_a", words=words
+        drives, slides = linkage.drive.kind == "turn", output in slid
+        words = self._slide_words(output) if slides else {"body": output}
+        ends = linkage.speed, f"{output}_dot" if slides else formulas.omega(output)
+        # A force over a torque is in 1/m, with the sliding speed in mm/s.
+        scaled, unit = ("1000 * ", "1/m") if drives and slides else ("", "1" if drives != slides else "mm")
+        key = f"advantage{'_slide' * slides}{'' if drives else '_of_length'}"
+        step = "advantage" if drives and not slides else "advantage_efforts"
+        formulas.write("advantage", f"{scaled}{ends[0]} / {ends[1]}", unit, step, "m_a", words=words)
+        self._ask("advantage", key, words, unit=f'"{unit}"')
+        wrong, name = (
+            (f"{ends[1]} / ({scaled}{ends[0]})" if scaled else f"{ends[1]} / {ends[0]}",),
+            "advantage_upside_down",
         )
-        self._ask("advantage", "advantage", words)
         self.mistakes.append(
-            UsualMistake(
-                "advantage_upside_down",
-                ("advantage",),
-                (f"{formulas.omega(body)} / {linkage.speed}",),
-                "advantage_upside_down",
-                words,
-                "inverse",
-            )
+            UsualMistake(name, ("advantage",), wrong, step.replace("advantage", name, 1), words, "inverse")
         )
 
     def _drives(self, key: str, *kinds: str) -> None:
