@@ -253,7 +253,7 @@ class _LinkageReader(JointReader):
                     on,
                     self._expression(at, load["moment"], "N*m", f"M{on}") if "moment" in load else None,
                     self._expression(at, load["force"], "N", f"F{on}") if "force" in load else None,
-                    self._expression(at, load.get("angle", "0 deg"), "deg", f"delta_F{on}"),
+                    self._expression(at, load.get("angle", "0 deg"), "deg", f"delta_F_{on}"),
                 )
             )
         return tuple(results)
