@@ -58,18 +58,6 @@ def test_no_page_but_the_last_is_white_by_more_than_a_quarter(seed):
     assert all(head < place for head, place in zip(heads, sorted(data), strict=True)), names
 
 
-@pytest.mark.slow
-def test_no_figure_of_a_lesson_leaves_a_page_of_the_book_white_and_each_reference_names_its_page():
-    book = RENDERER.book_pdf(bound(COURSE, "en", chapters=[2], solved=False))
-    pages = list(pypdfium2.PdfDocument(book))
-    texts = [page.get_textpage().get_text_bounded() for page in pages]
-    first = next(k for k, text in enumerate(texts) if text.startswith("Chapter 2."))
-    last = next(k for k, text in enumerate(texts) if "Chapter 2 on a page" in text)
-    shares = {k + 1: white(page) for k, page in enumerate(pages[first : last - 1], first)}
-    assert {number: share for number, share in shares.items() if share > 0.28} == {}
-    assert list(led_astray(texts)) == []
-
-
 #: Pages of the book that are white by more than a quarter: of the students' volume and of the solutions. Before questions of
 #: solutions could be cut and summaries shared a page there were 19 and 15 in English, 17 and 22 in French.
 WHITE = {"en": (8, 9), "fr": (9, 9)}
@@ -82,6 +70,9 @@ def test_the_whole_book_has_few_white_pages_and_each_reference_names_its_page(la
     volumes = [RENDERER.book_pdf(book, apart=apart) for apart in (False, True)]
     wrong, count = wrong_references(volumes[0])
     assert (wrong, count > 1000) == ([], True)
+    if lang == "en":
+        texts = [page.get_textpage().get_text_bounded() for page in pypdfium2.PdfDocument(volumes[0])]
+        assert list(led_astray(texts)) == []
     found = [sum(white(page) > MOST for page in pypdfium2.PdfDocument(volume)) for volume in volumes]
     assert all(count <= most for count, most in zip(found, WHITE[lang], strict=True)), found
 
@@ -90,7 +81,7 @@ def led_astray(texts):
     """The references to lessons, sections and exercises that name a page on which their heading does not stand."""
     heads = [{" ".join(line.split()) for line in text.splitlines()} for text in texts]
     references = re.findall(r"\((lesson|exercise) ([\d.]+)(?: §(\d+))?,\s+p\.\s+(\d+)\)", "\n".join(texts))
-    assert len(references) > 20
+    assert len(references) > 100
     for sort, number, section, page in references:
         head = f"{section}. " if section else f"{sort.capitalize()} {number}. "
         if not any(line.startswith(head) for line in heads[int(page) - 1]):
