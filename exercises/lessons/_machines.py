@@ -10,6 +10,7 @@ from coursework.authoring.linkage_files import LINKAGES
 from coursework.degrees import polar
 from coursework.figures import Figure, angle_mark, disc, line, note, shape, trace
 from coursework.linkages.compiled import compiled
+from coursework.quantities.graph import call_on_quantities
 
 from ._panels import TURN, moved
 
@@ -47,8 +48,9 @@ def path(name, point, **changed):
 
 
 def scheme(name, **changed):
-    """The elements of a mechanism's figure, and its points by letter."""
-    elements = unnamed(machine(name).variant(0, given=changed).figure.elements)
+    """The elements of a mechanism's figure, and its points by letter; at a dead point too, where no variant asks anything."""
+    spec = machine(name).spec
+    elements = unnamed(call_on_quantities(spec.figure, data(name, **changed), tuple(spec.helpers)).elements)
     elements = [
         e for e in elements if not isinstance(e, angle_mark) and not (isinstance(e, line) and e.dashed)
     ]
