@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from coursework.messages import Message, localised
+from coursework.messages import Message, as_message, localised
 
 
 class CourseworkError(Exception):
@@ -43,11 +43,14 @@ class MissingQuantity(CourseworkError, TypeError):
         self.names = names
 
     def __str__(self) -> str:
-        return self.advising(f"{', '.join(f'{name}=…' for name in self.names)} to the request")
+        values = ", ".join(f"{name}=…" for name in self.names)
+        return localised(self.advising(Message("{values} to the request", values=values)))
 
-    def advising(self, subject: str) -> str:
+    def advising(self, subject: str) -> Message:
         """Return the message, with what to add."""
-        return f"{self.needed}; add {subject}" if self.names else self.needed
+        if not self.names:
+            return as_message(self.needed)
+        return Message("{needed}; add {subject}", needed=self.needed, subject=subject)
 
 
 class Cycle(CourseworkError, ValueError):

@@ -38,6 +38,7 @@ import numpy as np
 
 from coursework.errors import BadCourse, CourseworkError, nearest, unknown
 from coursework.mechanics.statement import Mechanism
+from coursework.messages import Message
 from coursework.parsing.units import check_unit
 from coursework.quantities.error_kinds import PENALTIES
 from coursework.quantities.graph import Graph, QuantityNode, Replacement
@@ -457,7 +458,7 @@ class Solution:
             The solution has no such judge.
         """
         if name not in self.judges:
-            raise unknown("judge", name, self.judges, f"solution {self.name}")
+            raise unknown("judge", name, self.judges, Message("solution {exercise}", exercise=self.name))
         return self.judges[name]
 
     def mistaken(self, name: str) -> Graph:
@@ -478,7 +479,7 @@ class Solution:
             The solution has no such mistake.
         """
         if name not in self.mistakes:
-            raise unknown("mistake", name, self.mistakes, f"solution {self.name}")
+            raise unknown("mistake", name, self.mistakes, Message("solution {exercise}", exercise=self.name))
         return self._mistaken_graphs[name]
 
     def reached(self, name: str) -> frozenset[str]:

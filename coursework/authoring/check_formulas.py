@@ -16,6 +16,7 @@ from dataclasses import dataclass
 
 from coursework.authoring.check_report import CheckReport
 from coursework.course.variant import Variant
+from coursework.messages import Message, as_message
 from coursework.parsing.printed_formulas import DEGREE, FormulaValue, NotEvaluable, read
 from coursework.quantities.formula_latex import why_unprinted
 from coursework.sheets.answer_sheet import PRINTED_DIGITS, answer_sheet
@@ -83,13 +84,13 @@ def prove(step: Step, by_symbol: Mapping[str, str]) -> Proof | None:
     except NotEvaluable:
         return None  # an equation, a case
     if not step.formula:
-        return Proof(why_not="told in words")
+        return Proof(why_not=Message("told in words"))
     if not step.substitution and step.formula in by_symbol:
         return _compared(value, read(by_symbol[step.formula], PRINTED_DIGITS), is_angle)
     try:
         evaluated = read(step.substitution or step.formula, PRINTED_DIGITS, is_angle=is_angle)
     except NotEvaluable as fault:
-        return Proof(why_not=str(fault))
+        return Proof(why_not=as_message(fault))
     return _compared(value, evaluated, is_angle)
 
 

@@ -203,7 +203,9 @@ class CourseExercise(Generic[V]):
             value = plain_scalar(value)
         if isinstance(value, float) and value != value:
             data = ", ".join(f"{n} = {v}" for n, v in given.items())
-            raise Undefined(f"{self.name}: {name} does not exist for {data}")
+            raise Undefined(
+                "{exercise}: {name} does not exist for {data}", exercise=self.name, name=name, data=data
+            )
         return value
 
     @property
@@ -292,7 +294,7 @@ class CourseExercise(Generic[V]):
         seeds = list(seeds)
         for seed in seeds:
             if isinstance(seed, bool) or not isinstance(seed, (int, np.integer)) or seed < 0:
-                raise WrongValue(f"a seed is a whole number from 0 on; found {seed!r}")
+                raise WrongValue("a seed is a whole number from 0 on; found {seed!r}", seed=seed)
         seeds = [int(seed) for seed in seeds]
         drawn = self.draws.draw(seeds, secret, self.stated(given or {}))
         return [
@@ -417,7 +419,7 @@ def _check_shapes(values: Mapping[str, Any]) -> None:
         np.broadcast_shapes(*shapes.values())
     except ValueError:
         listed = ", ".join(f"{n} {shape}" for n, shape in shapes.items())
-        raise WrongValue(f"the arrays do not broadcast together: {listed}") from None
+        raise WrongValue("the arrays do not broadcast together: {listed}", listed=listed) from None
 
 
 def _known_to(graph: Graph, values: Mapping[str, Any]) -> dict[str, Any]:

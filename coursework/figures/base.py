@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, dataclass_transform
 
 from coursework.errors import CourseworkError, WrongValue
 from coursework.figures.ink import EDGE, PINS, SHADES, WHITE, Disc, turn
+from coursework.messages import Message
 
 if TYPE_CHECKING:
     from coursework.figures.paper import FigurePaper
@@ -85,10 +86,21 @@ class Element:
         except CourseworkError:  # a label says itself what is wrong with it
             raise
         except (TypeError, ValueError) as error:
-            raise WrongValue(f"{type(self).__name__}: {name} is {value!r}, not {_ASKED[kind]}") from error
+            raise WrongValue(
+                "{element}: {name} is {value!r}, not {asked}",
+                element=type(self).__name__,
+                name=name,
+                value=value,
+                asked=_ASKED[kind],
+            ) from error
         numbers = value if isinstance(value, tuple) else (value,)
         if any(isinstance(x, (float, complex)) and not cmath.isfinite(x) for x in numbers):
-            raise WrongValue(f"{type(self).__name__}: {name} is {value!r}, not finite")
+            raise WrongValue(
+                "{element}: {name} is {value!r}, not finite",
+                element=type(self).__name__,
+                name=name,
+                value=value,
+            )
         return value
 
     def settled(self, decimals: int) -> Element:
@@ -162,16 +174,16 @@ _READ: dict[str, Callable[[Any], object]] = {
     "tuple[complex, ...]": lambda value: tuple(map(complex, value)),
 }
 _ASKED = {
-    "complex": "a point (a complex number)",
-    "float": "a number",
-    "Positive": "a positive number",
-    "Positive | None": "a positive number",
-    "float | None": "a number",
-    "bool": "true or false",
-    "str | None": "a label",
-    "Shade": f"one of {', '.join(SHADES)}",
-    "tuple[str, str]": "two labels",
-    "tuple[complex, ...]": "points (complex numbers)",
+    "complex": Message("a point (a complex number)"),
+    "float": Message("a number"),
+    "Positive": Message("a positive number"),
+    "Positive | None": Message("a positive number"),
+    "float | None": Message("a number"),
+    "bool": Message("true or false"),
+    "str | None": Message("a label"),
+    "Shade": Message("one of {names}", names=", ".join(SHADES)),
+    "tuple[str, str]": Message("two labels"),
+    "tuple[complex, ...]": Message("points (complex numbers)"),
 }
 Positive = float
 Shade = str

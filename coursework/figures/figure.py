@@ -153,13 +153,15 @@ class Figure(_Drawn):
     ) -> None:
         for element in elements:
             if not isinstance(element, Element):
-                raise WrongValue(f"a figure is made of elements such as pin(0, 'A'); found {element!r}")
+                raise WrongValue(
+                    "a figure is made of elements such as pin(0, 'A'); found {element!r}", element=element
+                )
         object.__setattr__(self, "elements", elements)
         wide, high = paper_mm or _PAPER_MM
         object.__setattr__(self, "paper_mm", (float(wide), float(high)))
         object.__setattr__(self, "bounded", paper_mm is not None)
         if scale is not None and not 0 < scale < float("inf"):
-            raise WrongValue(f"the scale of a figure is a positive number; found {scale!r}")
+            raise WrongValue("the scale of a figure is a positive number; found {scale!r}", scale=scale)
         object.__setattr__(self, "fixed_scale", scale)
         self._extent  # noqa: B018  a figure without extent is refused where it is written
 
@@ -180,7 +182,7 @@ class Figure(_Drawn):
         low, high = _corners(points) if points else (0j, 0j)
         if not abs(high - low) > 0:
             names = ", ".join(type(element).__name__ for element in self.elements) or "no element"
-            raise WrongValue(f"the figure has no extent, so no scale: it is made of {names}")
+            raise WrongValue("the figure has no extent, so no scale: it is made of {names}", names=names)
         return low, high
 
     @property
@@ -209,7 +211,9 @@ class Figure(_Drawn):
             if self._fits(layout):
                 return self._grown(layout, size, refused)
             refused = scale
-        raise WrongValue(f"a paper box of {self.paper_mm} mm is too small for this figure's labels")
+        raise WrongValue(
+            "a paper box of {paper_mm} mm is too small for this figure's labels", paper_mm=self.paper_mm
+        )
 
     def _grown(self, layout: _Layout, size: complex, refused: float) -> _Layout:
         """Return a larger layout that fits, using the room that the labels leave, below a ``refused`` scale."""
@@ -233,7 +237,9 @@ class Figure(_Drawn):
         room = complex(*self.paper_mm) - symbols
         scales = [r / s for r, s in ((room.real, size.real), (room.imag, size.imag)) if s > 0]
         if min(scales) <= 0:
-            raise WrongValue(f"a paper box of {self.paper_mm} mm is too small for this figure's labels")
+            raise WrongValue(
+                "a paper box of {paper_mm} mm is too small for this figure's labels", paper_mm=self.paper_mm
+            )
         return settled(min(scales))
 
     def _drawn(self, scale: float) -> tuple[FigurePaper, list[int], list[int]]:

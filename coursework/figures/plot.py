@@ -115,11 +115,14 @@ class Plot:
         for panel in panels:
             if np.shape(panel.values) != np.shape(horizontal.values):
                 raise WrongValue(
-                    f"the curve {panel.label} has {np.size(panel.values)} values, "
-                    f"its variable {horizontal.label} has {np.size(horizontal.values)}"
+                    "the curve {label} has {count} values, its variable {variable} has {most}",
+                    label=panel.label,
+                    count=np.size(panel.values),
+                    variable=horizontal.label,
+                    most=np.size(horizontal.values),
                 )
             if not np.isfinite(panel.values).any():
-                raise WrongValue(f"the curve {panel.label} has no finite value")
+                raise WrongValue("the curve {label} has no finite value", label=panel.label)
         self.horizontal, self.panels, self.lang, self.at = horizontal, tuple(panels), lang, at
         self.title, self.width = title, width
         self.spots = tuple(tuple(s) for s in spots) or ((),) * len(panels)

@@ -160,9 +160,9 @@ def read(label: str) -> LabelText:
     except BadStatement as fault:
         if is_plain and label:
             return words(label)
-        raise WrongValue(f"label {label!r}: {fault}") from None
+        raise WrongValue("label {label!r}: {fault}", label=label, fault=fault) from None
     if not letters.runs:
-        raise WrongValue(f"label {label!r} has no letter to print")
+        raise WrongValue("label {label!r} has no letter to print", label=label)
     return LabelText(tuple(letters.runs), tuple(letters.accents))
 
 

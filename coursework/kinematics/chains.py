@@ -68,13 +68,20 @@ class ClosedChain:
         self._angles = {v.angle for v in vectors if isinstance(v.angle, str)} | turns
         if len(self.unknowns) != 2 * len(self.loops):
             raise WrongValue(
-                f"{len(self.loops)} loops fix {2 * len(self.loops)} unknowns; {len(self.unknowns)} are asked"
+                "{loops} loops fix {fixed} unknowns; {asked} are asked",
+                loops=len(self.loops),
+                fixed=2 * len(self.loops),
+                asked=len(self.unknowns),
             )
         for name in self.unknowns:
             if (name in self._lengths) == (name in self._angles):
-                raise WrongValue(f"the unknown {name!r} must be a length or an angle of some vector")
+                raise WrongValue(
+                    "the unknown {name!r} must be a length or an angle of some vector", name=name
+                )
             if name in turns:
-                raise WrongValue(f"{name!r} is a constant angle added to another; it cannot be unknown")
+                raise WrongValue(
+                    "{name!r} is a constant angle added to another; it cannot be unknown", name=name
+                )
         self.known = tuple(sorted((self._lengths | self._angles) - set(self.unknowns)))
         self._measures = [v.length for v in vectors if not isinstance(v.length, str)]
 
@@ -143,8 +150,8 @@ class ClosedChain:
             converged = bool(converged)
             if not converged:
                 raise CannotAssemble(
-                    f"the loops do not close from this start: a gap of {residual:.3g} is left; another start, "
-                    "nearer to the pose that is meant, may close, or none exists"
+                    "the loops do not close from this start: a gap of {residual:.3g} is left; another start, nearer to the pose that is meant, may close, or none exists",
+                    residual=residual,
                 )
         return Pose(dict(zip(self.unknowns, result, strict=True)), residual, condition, converged)
 

@@ -21,6 +21,7 @@ from coursework.errors import CannotAssemble, CourseworkError, Undefined
 from coursework.kinematics.angles import full_angle
 from coursework.kinematics.scaling import exponent_of, scaled
 from coursework.kinematics.vectors import components, cross, derivative, dot, size
+from coursework.messages import Message
 from coursework.system.blocks import in_blocks
 
 OPEN, CROSSED = 1, -1  #: sides of the inner joint: left of the directed line P -> Q, or right
@@ -311,8 +312,14 @@ def out_of_reach(
     least, most = abs(p_length - q_length), p_length + q_length
     gap = max(distance - most, least - distance) if gap is None else gap
     return CannotAssemble(
-        f"the linkage does not close: the pins are {distance:.6g} apart, but {subject}, "
-        f"{p_length:.6g} and {q_length:.6g} long, reach only {least:.6g} to {most:.6g} (gap {gap:.3g})"
+        "the linkage does not close: the pins are {distance:.6g} apart, but {subject}, {p_length:.6g} and {q_length:.6g} long, reach only {least:.6g} to {most:.6g} (gap {gap:.3g})",
+        distance=distance,
+        subject=Message(subject),
+        p_length=p_length,
+        q_length=q_length,
+        least=least,
+        most=most,
+        gap=gap,
     )
 
 
@@ -359,7 +366,8 @@ def _rrr_failure(p: Any, q: Any, p_length: Any, q_length: Any, _: Any) -> Course
     distance = float(np.hypot(np.real(q - p), np.imag(q - p)))
     if distance == 0 and p_length == q_length:
         return Undefined(
-            f"the two bodies are both {p_length:.6g} long and their far pins coincide: they may point anywhere"
+            "the two bodies are both {p_length:.6g} long and their far pins coincide: they may point anywhere",
+            p_length=p_length,
         )
     return out_of_reach(distance, float(p_length), float(q_length))
 
@@ -375,8 +383,10 @@ def _rrp(p: Any, length: Any, point: Any, side: Any, along: Any) -> tuple[Any]:
 def _rrp_failure(p: Any, length: Any, point: Any, _: Any, along: Any) -> CannotAssemble:
     away = abs(float(cross(along, point - p)))
     return CannotAssemble(
-        f"the linkage does not close: the line is {away:.6g} away from the pin, but the rod "
-        f"reaches only {length:.6g} (gap {away - length:.3g})"
+        "the linkage does not close: the line is {away:.6g} away from the pin, but the rod reaches only {length:.6g} (gap {gap:.3g})",
+        away=away,
+        length=length,
+        gap=away - length,
     )
 
 
@@ -395,8 +405,10 @@ def _rpr_failure(p: Any, q: Any, offset: Any, _: Any) -> CourseworkError:
     if distance >= abs(offset):
         return Undefined("the block lies on the guide's pivot: the guide has no direction there")
     return CannotAssemble(
-        f"the linkage does not close: the block is {distance:.6g} from the guide's pivot, but the slot passes "
-        f"{abs(offset):.6g} away (gap {abs(offset) - distance:.3g})"
+        "the linkage does not close: the block is {distance:.6g} from the guide's pivot, but the slot passes {offset:.6g} away (gap {gap:.3g})",
+        distance=distance,
+        offset=abs(offset),
+        gap=abs(offset) - distance,
     )
 
 
@@ -407,7 +419,7 @@ def _prp(first_point: Any, first_along: Any, second_point: Any, second_along: An
 
 def _prp_failure(first_point: Any, first_along: Any, second_point: Any, _: Any) -> CannotAssemble:
     apart = abs(float(cross(first_along, second_point - first_point)))
-    return CannotAssemble(f"the linkage does not close: the lines are parallel (gap {apart:.3g})")
+    return CannotAssemble("the linkage does not close: the lines are parallel (gap {apart:.3g})", apart=apart)
 
 
 def _rpp(p: Any, point: Any, along: Any, across: Any) -> tuple[Any, Any]:
@@ -418,4 +430,6 @@ def _rpp(p: Any, point: Any, along: Any, across: Any) -> tuple[Any, Any]:
 
 def _rpp_failure(p: Any, point: Any, along: Any, _: Any) -> CannotAssemble:
     apart = abs(float(cross(along, p - point)))
-    return CannotAssemble(f"the linkage does not close: the two slides are parallel (gap {apart:.3g})")
+    return CannotAssemble(
+        "the linkage does not close: the two slides are parallel (gap {apart:.3g})", apart=apart
+    )

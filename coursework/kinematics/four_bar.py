@@ -29,6 +29,7 @@ from coursework.kinematics.dyads import out_of_reach, side_of
 from coursework.kinematics.margins import grashof_margins
 from coursework.kinematics.scaling import exponent_of, scaled
 from coursework.kinematics.vectors import direction_of
+from coursework.messages import Message
 from coursework.system.blocks import in_blocks
 
 
@@ -331,7 +332,9 @@ class FourBar:
         heading, parts = taken_apart(crank_angle)
         pose = _ScaledFourBar(t, sweep(heading(*parts), t.reach))
         if not math.isfinite(pose.swept.both):
-            return WrongValue(f"the crank angle is {crank_angle}, where a finite number is needed")
+            return WrongValue(
+                "the crank angle is {crank_angle}, where a finite number is needed", crank_angle=crank_angle
+            )
         m, stretch, fold = float(pose.squared_line), float(pose.close.stretch), float(pose.close.fold)
         distance = math.ldexp(math.sqrt(m), int(self._exponent))
         _, _, coupler, rocker = (float(x) for x in self.lengths)
@@ -344,11 +347,14 @@ class FourBar:
             return out_of_reach(distance, coupler, rocker, gap, "coupler and rocker")
         if m == 0.0:
             return Undefined(
-                f"coupler and rocker are both {coupler:.6g} long and their far pins coincide: they may point anywhere"
+                "coupler and rocker are both {coupler:.6g} long and their far pins coincide: they may point anywhere",
+                coupler=coupler,
             )
         return Undefined(
-            f"coupler and rocker are in line (pins {distance:.6g} apart, lengths {coupler:.6g} and {rocker:.6g}): "
-            "at a dead point the rates do not exist"
+            "coupler and rocker are in line (pins {distance:.6g} apart, lengths {coupler:.6g} and {rocker:.6g}): at a dead point the rates do not exist",
+            distance=distance,
+            coupler=coupler,
+            rocker=rocker,
         )
 
 
@@ -425,7 +431,11 @@ def _lengths(*given: Any) -> list[Any]:
     if all(np.ndim(length) == 0 for length in given):
         for name, length in zip(("ground", "crank", "coupler", "rocker"), given, strict=True):
             if not 0 < length < math.inf:
-                raise WrongValue(f"the length of the {name} is {length}, where a positive number is needed")
+                raise WrongValue(
+                    "the length of the {name} is {length}, where a positive number is needed",
+                    name=Message(name),
+                    length=length,
+                )
         return [float(length) for length in given]
     arrays = [np.asarray(length, dtype=float) for length in given]
     return [np.where((x > 0) & (x < math.inf), x, math.nan) for x in arrays]

@@ -119,10 +119,12 @@ class RockerSlider(NamedTuple):
 def _refuse_negative(crank: float, rod: float) -> None:
     if not crank > 0:
         raise CannotAssemble(
-            f"the crank does not turn fully: the linkage lacks {-crank:.3g} to close at every angle"
+            "the crank does not turn fully: the linkage lacks {gap:.3g} to close at every angle", gap=-crank
         )
     if not rod > 0:
-        raise CannotAssemble(f"the rod does not reach its line all turn: it is too short by {-rod:.3g}")
+        raise CannotAssemble(
+            "the rod does not reach its line all turn: it is too short by {gap:.3g}", gap=-rod
+        )
 
 
 def _margins(

@@ -21,6 +21,7 @@ from coursework.kinematics.closing import Closing, Opening, Sweep, closing, in_t
 from coursework.kinematics.margins import exact_sum
 from coursework.kinematics.scaling import exponent_of, scaled
 from coursework.kinematics.vectors import direction
+from coursework.messages import Message
 from coursework.system.blocks import in_blocks
 
 
@@ -270,7 +271,9 @@ class SliderCrank:
         """Return the error that explains a NaN of scalar arguments."""
         cos, sin = full_angle(crank_angle)
         if not math.isfinite(sin):
-            return WrongValue(f"the crank angle is {crank_angle}, where a finite number is needed")
+            return WrongValue(
+                "the crank angle is {crank_angle}, where a finite number is needed", crank_angle=crank_angle
+            )
         close = _closing(self._linkage, _sweep(crank_angle, cos, sin, self._linkage.reach))
         least = float(min(close.stretch, close.fold))
         crank, rod, offset = self.lengths
@@ -278,10 +281,14 @@ class SliderCrank:
         if least < 0:
             gap = math.ldexp(-least, int(self._exponent))
             return CannotAssemble(
-                f"the linkage does not close: the line is {away:.6g} away from the crank pin, but the rod reaches "
-                f"only {rod:.6g} (gap {gap:.3g})"
+                "the linkage does not close: the line is {away:.6g} away from the crank pin, but the rod reaches only {rod:.6g} (gap {gap:.3g})",
+                away=away,
+                rod=rod,
+                gap=gap,
             )
-        return Undefined(f"the rod, {rod:.6g}, stands square to the slider's line: the rates do not exist")
+        return Undefined(
+            "the rod, {rod:.6g}, stands square to the slider's line: the rates do not exist", rod=rod
+        )
 
 
 def time_ratio(excess: Any) -> Any:
@@ -328,7 +335,11 @@ def _lengths(crank: Any, rod: Any, offset: Any) -> tuple[Any, Any, Any]:
     if all(np.ndim(x) == 0 for x in (crank, rod, offset)):
         for name, length in (("crank", crank), ("rod", rod)):
             if not 0 < length < math.inf:
-                raise WrongValue(f"the length of the {name} is {length}, where a positive number is needed")
+                raise WrongValue(
+                    "the length of the {name} is {length}, where a positive number is needed",
+                    name=Message(name),
+                    length=length,
+                )
         return float(crank), float(rod), float(offset)
     r, l, e = np.broadcast_arrays(*(np.asarray(x, dtype=float) for x in (crank, rod, offset)))
     r, l = (np.where((x > 0) & (x < math.inf), x, math.nan) for x in (r, l))

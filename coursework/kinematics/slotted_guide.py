@@ -175,7 +175,7 @@ def _scaled_lengths(ground: Any, crank: Any) -> tuple[Any, Any, Any]:
     d, r = (np.asarray(x, dtype=float)[()] for x in (ground, crank))
     if np.ndim(d) == np.ndim(r) == 0 and not (0 < d < math.inf and 0 < r < math.inf):
         raise WrongValue(
-            f"the lengths of ground and crank are {d} and {r}, where positive numbers are needed"
+            "the lengths of ground and crank are {d} and {r}, where positive numbers are needed", d=d, r=r
         )
     exponent = exponent_of(d, r)
     return scaled(d, -exponent)[()], scaled(r, -exponent)[()], exponent

@@ -123,5 +123,7 @@ def _refuse_if_negative(margin: Any, other_margin: Any, *sides: Any) -> None:
     if np.ndim(margin) == 0 and min(margin, other_margin) < 0:
         text = ", ".join(f"{side:.6g}" for side in sides[:2])
         raise CannotAssemble(
-            f"the sides {text} and {sides[2]:.6g} make no triangle: the longest exceeds the two others together"
+            "the sides {shorter} and {longest:.6g} make no triangle: the longest exceeds the two others together",
+            shorter=text,
+            longest=sides[2],
         )

@@ -61,11 +61,13 @@ def mark(variant: Variant, answers: Mapping[str, Any], known: Mapping[str, str] 
     parts = {p.id: p for p in variant.parts}
     if not isinstance(answers, Mapping):
         raise WrongValue(
-            f"answers are given by part: {{'{next(iter(parts))}': '12 mm'}}; found {type(answers).__name__}"
+            "answers are given by part: {{'{part}': '12 mm'}}; found {found}",
+            part=next(iter(parts)),
+            found=type(answers).__name__,
         )
     for part_id in answers:
         if not isinstance(part_id, str):
-            raise WrongValue(f"a part is named by a text; found {type(part_id).__name__}")
+            raise WrongValue("a part is named by a text; found {found}", found=type(part_id).__name__)
         if part_id not in parts:
             raise unknown("part", part_id, parts, f"{variant.exercise.name} {variant.seed}")
     key, known = variant.key, known or {}

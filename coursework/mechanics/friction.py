@@ -23,6 +23,7 @@ from coursework.mechanics.equilibrium import Equilibrium
 from coursework.mechanics.linkage import MM, Linkage, PinJoint, SlideJoint
 from coursework.mechanics.rates import Stance, no_rounding, solved
 from coursework.mechanics.wrenches import BodyWrenches
+from coursework.messages import Message
 
 _STEPS = 4  #: in which friction grows to what it is
 _ROUNDS = 40  #: of Newton's method at a step; sides and magnitudes settle in a few
@@ -104,29 +105,39 @@ def contacts(linkage: Linkage, friction: Mapping[str, Any]) -> tuple[Contact, ..
         if isinstance(given, (tuple, list)):
             if several := [n for n in pins if n.startswith(f"{name} ")]:
                 raise WrongValue(
-                    f"at {name} several bodies are pinned; name one of their joints: {', '.join(several)}"
+                    "at {name} several bodies are pinned; name one of their joints: {several}",
+                    name=name,
+                    several=", ".join(several),
                 )
             if name not in pins:
-                raise unknown("pin", name, pins, "the mechanism")
+                raise unknown("pin", name, pins, Message("the mechanism"))
             coefficient, radius = (float(linkage.number(value)) for value in given)
             if coefficient < 0 or radius < 0:
                 raise WrongValue(
-                    f"the friction of pin {name} is not negative; found {coefficient:g} and {radius:g} mm"
+                    "the friction of pin {name} is not negative; found {coefficient:g} and {radius:g} mm",
+                    name=name,
+                    coefficient=coefficient,
+                    radius=radius,
                 )
             size = coefficient * radius * MM
             results.append(Contact(pins[name], size, ({f"{name}_x": 1.0}, {f"{name}_y": 1.0})))
         elif f"{name} slide" in slides or name in slides:
             coefficient = float(linkage.number(given))
             if coefficient < 0:
-                raise WrongValue(f"the friction of slide {name} is not negative; found {coefficient:g}")
+                raise WrongValue(
+                    "the friction of slide {name} is not negative; found {coefficient:g}",
+                    name=name,
+                    coefficient=coefficient,
+                )
             results += _of_slide(slides.get(f"{name} slide") or slides[name], coefficient)
         elif name in pins:
             raise WrongValue(
-                f"{name} is a pin: its friction has the radius of its journal, too: "
-                f'{name} = {{ coefficient = {given}, radius = "10 mm" }}'
+                '{name} is a pin: its friction has the radius of its journal, too: {name} = {{ coefficient = {given}, radius = "10 mm" }}',
+                name=name,
+                given=given,
             )
         else:
-            raise unknown("slide", name, [n.removesuffix(" slide") for n in slides], "the mechanism")
+            raise unknown("slide", name, [n.removesuffix(" slide") for n in slides], Message("the mechanism"))
     return tuple(contact for contact in results if contact.size)
 
 

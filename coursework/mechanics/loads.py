@@ -15,6 +15,7 @@ from coursework.mechanics.linkage import BodyPoint, Linkage
 from coursework.mechanics.rates import Stance, no_rounding
 from coursework.mechanics.statement import Load, Place
 from coursework.mechanics.wrenches import BodyWrenches
+from coursework.messages import Message
 
 STROKES = ("always", "working stroke", "return stroke", "forward", "backward")
 _EVEN = math.radians(0.05)  #: two strokes whose lengths differ by less are as long as each other
@@ -47,23 +48,32 @@ class AppliedLoad:
         load, mechanism = self.load, self.linkage.mechanism
         known_names = (*mechanism.points, *mechanism.names)
         if load.on not in known_names:
-            raise unknown("point or body", load.on, known_names, "the mechanism")
+            raise unknown("point or body", load.on, known_names, Message("the mechanism"))
         if load.during not in STROKES:
-            raise unknown("stroke", load.during, STROKES, f"the load on {load.on}")
+            raise unknown("stroke", load.during, STROKES, Message("the load on {place}", place=load.on))
         if load.force and load.on not in mechanism.points:
             raise WrongValue(
-                f"a force acts on a point, {load.on} is a body; points are {', '.join(mechanism.points)}"
+                "a force acts on a point, {place} is a body; points are {points}",
+                place=load.on,
+                points=", ".join(mechanism.points),
             )
         if load.moment and load.on not in mechanism.names:
             raise WrongValue(
-                f"a moment acts on a body, {load.on} is a point; bodies are {', '.join(mechanism.names)}"
+                "a moment acts on a body, {place} is a point; bodies are {names}",
+                place=load.on,
+                names=", ".join(mechanism.names),
             )
         if load.body and load.body not in mechanism.holders(load.on):
-            raise unknown("body", load.body, mechanism.holders(load.on), f"those that hold {load.on}")
+            raise unknown(
+                "body",
+                load.body,
+                mechanism.holders(load.on),
+                Message("those that hold {place}", place=load.on),
+            )
         if load.during != "always" and load.against and not self.is_moment and self._guide is None:
             raise WrongValue(
-                f"{load.on} has no strokes: it neither slides on the ground nor turns about a fixed point; a load on it acts "
-                "always, or along an angle of its own"
+                "{place} has no strokes: it neither slides on the ground nor turns about a fixed point; a load on it acts always, or along an angle of its own",
+                place=load.on,
             )
 
     @property
@@ -286,8 +296,9 @@ def strokes(acting: AppliedLoad, forward: float, backward: float) -> Strokes:
         return Strokes(1 if during == "forward" else -1, really=True)
     if abs(forward - backward) < _EVEN:
         raise WrongValue(
-            f"the load on {acting.load.on} acts during the {during}, the longer one or the other: here both take as long; "
-            "say during = 'forward' or 'backward' (along its line)"
+            "the load on {place} acts during the {during}, the longer one or the other: here both take as long; say during = 'forward' or 'backward' (along its line)",
+            place=acting.load.on,
+            during=Message(during),
         )
     longer = 1 if forward > backward else -1
     return Strokes(longer if during == "working stroke" else -longer)

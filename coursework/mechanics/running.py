@@ -230,11 +230,11 @@ class Running:
         inertia = efforts[0] + self.forces.flywheel
         lacking = self.drive(speed) - efforts[2]
         if not inertia > 0:
-            where = f"{math.degrees(angle):.6g} degrees"
             raise Undefined(
-                f"the mechanism does not close at {where}, or a guide lies on its own pivot there"
+                "the mechanism does not close at {angle:.6g} degrees, or a guide lies on its own pivot there"
                 if inertia != inertia
-                else f"no inertia resists at {where}"
+                else "no inertia resists at {angle:.6g} degrees",
+                angle=math.degrees(angle),
             )
         if self.rows.wrenches == 3:
             return (lacking - efforts[1] * speed * speed) / inertia, lacking
@@ -248,8 +248,8 @@ class Running:
             rubbed = self._rubbed(state, values, sizes, signs)
             if not math.isfinite(rubbed):
                 raise Undefined(
-                    f"the mechanism jams at {math.degrees(angle) % 360:.6g} degrees of its driver: its friction grows "
-                    "faster than what overcomes it"
+                    "the mechanism jams at {angle:.6g} degrees of its driver: its friction grows faster than what overcomes it",
+                    angle=math.degrees(angle) % 360,
                 )
             lacking -= rubbed
         return (lacking - efforts[1] * speed * speed) / inertia, lacking
@@ -257,13 +257,15 @@ class Running:
     def _count(self, angle: float) -> None:
         if not abs(angle) < _FAR:
             raise Undefined(
-                f"the driver's angle passes {_FAR:g} radians: it has no digits left to place the mechanism"
+                "the driver's angle passes {most:g} radians: it has no digits left to place the mechanism",
+                most=_FAR,
             )
         self.work += self.cost
         if self.work > MOST_WORK:
             raise Undefined(
-                f"the motion takes more than {MOST_WORK // self.cost} evaluations of its equation, by "
-                f"{math.degrees(angle):.6g} degrees; give a shorter duration"
+                "the motion takes more than {most} evaluations of its equation, by {angle:.6g} degrees; give a shorter duration",
+                most=MOST_WORK // self.cost,
+                angle=math.degrees(angle),
             )
 
     def _rubbed(self, at: _Instant, values: np.ndarray, sizes: Sequence[float], signs: np.ndarray) -> float:
@@ -440,7 +442,9 @@ class Running:
         scales = (rtol, rtol * max(1.0, abs(speed)), rtol * self._energy(angle, speed, duration))
         while t < duration:
             if len(motion.phases) > MOST_PHASES:
-                raise Undefined(f"the motion turns back more than {MOST_PHASES} times, by t = {t:.6g} s")
+                raise Undefined(
+                    "the motion turns back more than {most} times, by t = {t:.6g} s", most=MOST_PHASES, t=t
+                )
             direction = self._direction(state)
             phase, after = (
                 self._stretch(t, duration, state, direction, rtol, scales)
@@ -498,8 +502,9 @@ class Running:
         )  # fmt: skip
         if solved.status < 0:
             raise Undefined(
-                f"the motion stops at t = {solved.t[-1]:.6g} s, at {math.degrees(solved.y[0, -1]):.6g} degrees: the "
-                "acceleration grows without bound, since hardly any inertia resists there; give the crank one"
+                "the motion stops at t = {t:.6g} s, at {angle:.6g} degrees: the acceleration grows without bound, since hardly any inertia resists there; give the crank one",
+                t=solved.t[-1],
+                angle=math.degrees(solved.y[0, -1]),
             )
         end, last = float(solved.t[-1]), solved.y[:, -1].copy()
         if solved.status == 1:

@@ -29,6 +29,7 @@ from coursework.markup.formula_tree import (
     Symbol,
     parse,
 )
+from coursework.messages import as_message
 
 DEGREE = math.pi / 180
 _EXACT = 1e-9  #: of a number: what it may lack of one that is printed in full (``language.significant``)
@@ -65,7 +66,7 @@ def read(latex: str, rounded_to: int, *, is_angle: bool = False) -> FormulaValue
     try:
         tree = parse(latex)
     except BadStatement as fault:
-        raise NotEvaluable(str(fault)) from fault
+        raise NotEvaluable(as_message(fault)) from fault
     numbers = _numbers(tree)
     halves = [_half_step(number, rounded_to) for number in numbers]
     columns = _columns(tree, numbers, halves)
@@ -195,7 +196,7 @@ class Evaluation:
                 return np.abs(self.of(body))
             case Script(base=base, below=None, above=above, primes=0) if above is not None:
                 return self._raised(base, above)
-        raise NotEvaluable(f"{_piece_text(node)} has no value")
+        raise NotEvaluable("{piece} has no value", piece=_piece_text(node))
 
     def _number(self, number: Num) -> Any:
         column = np.full(1 + 2 * len(self.halves), float(f"{number.digits}e{number.exponent or 0}"))
@@ -239,7 +240,7 @@ class _FormulaLine:
         while self._taken(_SEMICOLON):
             values.append(self._sum())
         if self.at < len(self.items):
-            raise NotEvaluable(f"{_piece_text(self.items[self.at])} has no value")
+            raise NotEvaluable("{piece} has no value", piece=_piece_text(self.items[self.at]))
         return values[0] if len(values) == 1 else tuple(values)
 
     def _next(self) -> Node | None:
@@ -264,7 +265,9 @@ class _FormulaLine:
             before = self.items[self.at - 1]
             if not self._taken(*_TIMES):
                 if _is_digits(item) and _is_digits(before):
-                    raise NotEvaluable(f"{_piece_text(item)} follows a number without a sign between them")
+                    raise NotEvaluable(
+                        "{piece} follows a number without a sign between them", piece=_piece_text(item)
+                    )
                 if not _is_factor(item):
                     break
             value = _single(value) * _single(self._factor())
@@ -305,11 +308,11 @@ class _FormulaLine:
     def _function(self, name: str) -> Any:
         """Return a function of what stands in the brackets after it, or of the one factor that follows."""
         if name not in _FUNCTIONS:
-            raise NotEvaluable(f"{name} has no value")
+            raise NotEvaluable("{name} has no value", name=name)
         argument = self._factor()
         arguments = argument if isinstance(argument, tuple) else (argument,)
         if (len(arguments) > 1) != (name in _SEVERAL):
-            raise NotEvaluable(f"{name} of {len(arguments)} values is not known")
+            raise NotEvaluable("{name} of {count} values is not known", name=name, count=len(arguments))
         return self.evaluation.called(name, arguments)
 
 

@@ -449,8 +449,11 @@ def convert(value: Any, from_unit: str | Unit, to_unit: str | Unit) -> Any:
     source, target = _as_unit(from_unit), _as_unit(to_unit)
     if not _compatible(source, target):
         raise WrongUnit(
-            f"{shorten(source.text)!r} measures {describe(source)}, but {describe(target)} is expected, "
-            f"as in {target.text!r}"
+            "{found!r} measures {measured}, but {wanted} is expected, as in {unit!r}",
+            found=shorten(source.text),
+            measured=describe(source),
+            wanted=describe(target),
+            unit=target.text,
         )
     if source.zero is not None and target.zero is not None and source.zero != target.zero:
         return _on_scale(value, source, target)
@@ -473,11 +476,12 @@ def _on_scale(value: Any, source: Unit, target: Unit) -> Any:
     return value * ratio.numerator / ratio.denominator + float(shift)
 
 
-def describe(unit: Unit) -> str:
+def describe(unit: Unit) -> Message:
     """Return a unit's dimension in words: ``length/time^2``."""
     pairs = list(zip(DIMENSIONS, unit.dimension, strict=True))
-    above = [n if p == 1 else f"{n}^{p}" for n, p in pairs if p > 0]
-    below = [n if p == -1 else f"{n}^{-p}" for n, p in pairs if p < 0]
+    above = [f"{{{n}}}" if p == 1 else f"{{{n}}}^{p}" for n, p in pairs if p > 0]
+    below = [f"{{{n}}}" if p == -1 else f"{{{n}}}^{-p}" for n, p in pairs if p < 0]
     if not above and not below:
-        return "a ratio"
-    return "*".join(above or ["1"]) + "".join(f"/{b}" for b in below)
+        return Message("a ratio")
+    text = "*".join(above or ["1"]) + "".join(f"/{b}" for b in below)
+    return Message(text, **{name: Message(name) for name, power in pairs if power})

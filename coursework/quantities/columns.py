@@ -31,7 +31,9 @@ def each_stacked(read: Callable[[Any], Any], stacked: Any) -> Any:
     if not isinstance(stacked, np.ndarray):
         return read(stacked)
     if stacked.dtype != object or not stacked.size:
-        raise WrongValue(f"joints is a list of joints, each a mapping; found {str(stacked)[:60]!r}")
+        raise WrongValue(
+            "joints is a list of joints, each a mapping; found {stacked!r}", stacked=str(stacked)[:60]
+        )
     result = np.array([read(item) for item in stacked.ravel()])
     return result.reshape(stacked.shape + result.shape[1:])
 
@@ -51,7 +53,7 @@ def matrix(*rows: Sequence[Any]) -> np.ndarray:
     """
     lengths = {len(row) for row in rows}
     if len(lengths) != 1:
-        raise WrongValue(f"the rows of a matrix have one length; found {sorted(lengths)}")
+        raise WrongValue("the rows of a matrix have one length; found {lengths}", lengths=sorted(lengths))
     entries = np.broadcast_arrays(*(np.asarray(e, dtype=float) for row in rows for e in row))
     return np.stack(entries, axis=-1).reshape(*entries[0].shape, len(rows), lengths.pop())
 

@@ -34,6 +34,7 @@ from coursework.errors import (
     nearest,
     unknown,
 )
+from coursework.messages import Message
 from coursework.system.blocks import joined, pieces
 
 Value = Any  #: a float, a complex number, a text, or an array of them
@@ -129,7 +130,9 @@ def _run(steps: Sequence[tuple], values: dict[str, Value]) -> None:
             if "truth value of an array" in str(fault):
                 raise BrokenFunction(_branches(function, fault)) from fault
             text = ", ".join(f"{a} = {values[a]}" for a in arguments)[:300]
-            raise Undefined(f"{name} does not exist for {text} ({fault})") from fault
+            raise Undefined(
+                "{name} does not exist for {text} ({fault})", name=name, text=text, fault=fault
+            ) from fault
         except Exception as fault:
             raise BrokenFunction(f"{_location(function)} fails: {type(fault).__name__}: {fault}") from fault
 
@@ -149,13 +152,22 @@ def _branches(function: Callable[..., Value], fault: Exception) -> str:
 def _missing(results: Mapping[str, str]) -> MissingQuantity:
     """Return the error for missing quantities, each with the first one that needs it."""
     names = tuple(results)
-    listed = f"{', '.join(names[:-1])} and {names[-1]}" if names[1:] else names[0]
-    are = "are" if names[1:] else "is"
+    listed: str = names[0]
+    if names[1:]:
+        listed = Message("{first} and {second}", first=", ".join(names[:-1]), second=names[-1])
     needing = set(results.values())
-    subject = needing.pop() if len(needing) == 1 else "the request"
-    return MissingQuantity(
-        f"{subject} needs {listed}, which {are} not given" if subject else f"{listed} {are} not given", names
-    )
+    subject = needing.pop() if len(needing) == 1 else Message("the request")
+    told = {
+        (True, True): Message(
+            "{subject} needs {listed}, which are not given", subject=subject, listed=listed
+        ),
+        (True, False): Message(
+            "{subject} needs {listed}, which is not given", subject=subject, listed=listed
+        ),
+        (False, True): Message("{listed} are not given", listed=listed),
+        (False, False): Message("{listed} is not given", listed=listed),
+    }
+    return MissingQuantity(told[bool(subject), len(names) > 1], names)
 
 
 def _met(nodes: Mapping[str, QuantityNode], names: Iterable[str]) -> frozenset[str]:
@@ -308,7 +320,7 @@ class Graph:
                 return
             if name in path:
                 loop = " -> ".join([*path[path.index(name) :], name])
-                raise Cycle(f"quantities need each other: {loop}; give one of them a value")
+                raise Cycle("quantities need each other: {loop}; give one of them a value", loop=loop)
             path.append(name)
             node = self._nodes[name]
             if node.stable is not None and not self._passed_over[name] & given:

@@ -10,6 +10,7 @@ from typing import Any
 from coursework.errors import WrongValue, unknown
 from coursework.mechanics.statement import Body, Load, Mechanism, Place
 from coursework.mechanics.wrenches import GRAVITY
+from coursework.messages import Message
 
 
 @dataclass(frozen=True)
@@ -37,9 +38,14 @@ class Flywheel:
 
     def __post_init__(self) -> None:
         if self.unevenness is not None and not 0 < self.unevenness < 1:
-            raise WrongValue(f"an unevenness lies between 0 and 1, 0.02 for 2 %; found {self.unevenness:g}")
+            raise WrongValue(
+                "an unevenness lies between 0 and 1, 0.02 for 2 %; found {unevenness:g}",
+                unevenness=self.unevenness,
+            )
         if self.inertia is not None and not 0 < self.inertia < 1e12:
-            raise WrongValue(f"the inertia of a flywheel is above 0; found {self.inertia:g} kg*m^2")
+            raise WrongValue(
+                "the inertia of a flywheel is above 0; found {inertia:g} kg*m^2", inertia=self.inertia
+            )
 
 
 @dataclass(frozen=True)
@@ -53,8 +59,9 @@ class Motor:
     def __post_init__(self) -> None:
         if self.no_load_speed is not None and not self.torque * self.no_load_speed > 0:
             raise WrongValue(
-                "a motor turns the way that its torque pulls: torque and no_load_speed have one sign and are not 0; found "
-                f"{self.torque:g} N*m and {self.no_load_speed:g} rad/s"
+                "a motor turns the way that its torque pulls: torque and no_load_speed have one sign and are not 0; found {torque:g} N*m and {no_load_speed:g} rad/s",
+                torque=self.torque,
+                no_load_speed=self.no_load_speed,
             )
 
     def at(self, speed: float) -> float:
@@ -94,13 +101,15 @@ class SceneData:
         """
         for name in self.bodies:
             if name not in mechanism.names:
-                raise unknown("body", name, mechanism.names, "the mechanism")
+                raise unknown("body", name, mechanism.names, Message("the mechanism"))
         points = [slide.at for slide in mechanism.slides]
         for name, length in self.lengths.items():
             if name not in points:
-                raise unknown("slide", name, points, "the mechanism")
+                raise unknown("slide", name, points, Message("the mechanism"))
             if length < 0:
-                raise WrongValue(f"the length of slide {name} is not negative; found {length:g}")
+                raise WrongValue(
+                    "the length of slide {name} is not negative; found {length:g}", name=name, length=length
+                )
         return dataclasses.replace(
             mechanism,
             bodies=tuple(_weighed(body, self.bodies.get(body.name)) for body in mechanism.bodies),
@@ -121,10 +130,15 @@ def _weighed(body: Body, mass: BodyMass | None) -> Body:
     }
     for name, value in changes.items():
         if value < 0:
-            raise WrongValue(f"the {name} of body {body.name} is not negative; found {value:g}")
+            raise WrongValue(
+                "the {name} of body {body} is not negative; found {value:g}",
+                name=Message(name),
+                body=body.name,
+                value=value,
+            )
     if isinstance(mass.centre, str):
         if mass.centre not in body.places:
-            raise unknown("point", mass.centre, body.places, f"body {body.name}")
+            raise unknown("point", mass.centre, body.places, Message("body {body}", body=body.name))
         changes["centre"] = mass.centre
     elif mass.centre is not None:
         name = f"G{body.name}"

@@ -93,8 +93,10 @@ class Animation(Reel):
                 raise unknown("effect", effect, EFFECTS, variant.exercise.name)
             if effect != "position" and effect not in self.available:
                 raise WrongValue(
-                    f"{variant.exercise.name}: no {effect} to show; "
-                    f"{variant.exercise.folder.source('solutions', variant.exercise.name)} states none in motion(…)"
+                    "{exercise}: no {effect} to show; {source} states none in motion(…)",
+                    exercise=variant.exercise.name,
+                    effect=effect,
+                    source=variant.exercise.folder.source("solutions", variant.exercise.name),
                 )
         self.effects = tuple(e for e in EFFECTS if e in effects) or ("position",)
 

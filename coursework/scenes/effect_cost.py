@@ -110,7 +110,7 @@ def budget(scene: Scene, run: Run, tolerance: float = TOLERANCE) -> EffectBudget
     if not scene.effects:
         raise WrongValue("a budget is of effects: name some, --effects load,inertia,friction")
     if not tolerance > 0:
-        raise WrongValue(f"a tolerance is above 0, 0.01 for 1 %; found {tolerance:g}")
+        raise WrongValue("a tolerance is above 0, 0.01 for 1 %; found {tolerance:g}", tolerance=tolerance)
     full = run(scene)
     others, needed = _others(scene, run, scene.effects)
     times = _times({"": scene, **others}, run)

@@ -50,7 +50,7 @@ class Reel:
         if not exercise.is_animated:
             raise BadCourse(f"{exercise.name} has no figure to move")
         if count < 3:
-            raise WrongValue(f"a cycle has at least three angles; found {count}")
+            raise WrongValue("a cycle has at least three angles; found {count}", count=count)
         self.variant = variant
         self.count = count
 

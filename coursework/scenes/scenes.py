@@ -81,12 +81,18 @@ class Scene(Showing):
         Positions are whole multiples of the step, never accumulated.
         """
         if not 1 <= count <= MOST_STEPS:
-            raise WrongValue(f"a cycle has from 1 to {MOST_STEPS:g} steps; found {count:g}; take fewer")
+            raise WrongValue(
+                "a cycle has from 1 to {most:g} steps; found {count:g}; take fewer",
+                most=MOST_STEPS,
+                count=count,
+            )
         columns, units = self.columns(self.steps(count))
         angles = self.driver_motion(columns[self.driver.moved], moving=False)[0]
         if len(columns) == 1:
             raise WrongValue(
-                f"{self.exercise.name}: nothing to show for the effects {', '.join(self.effects)}"
+                "{exercise}: nothing to show for the effects {effects}",
+                exercise=self.exercise.name,
+                effects=", ".join(self.effects),
             )
         return SceneTable(columns, units, self._evaluated(), tuple(self._cycle_notes(columns, angles)))
 
@@ -236,11 +242,11 @@ class Scene(Showing):
         moves = INERTIA in self.effects and bool(self.linkage.masses)
         if not moves and FLYWHEEL not in self.effects:
             has = (
-                "no body has a mass; a scene file gives some"
+                Message("no body has a mass; a scene file gives some")
                 if INERTIA in self.effects
-                else "without mass nothing moves in time"
+                else Message("without mass nothing moves in time")
             )
-            raise WrongValue(f"a motion in time needs the effect 'inertia': {has}")
+            raise WrongValue("a motion in time needs the effect 'inertia': {has}", has=has)
         output = self._output_pace if self.driver.output and self.driver.speed else None
         return Running(self.forces, drive.at, output)
 
@@ -270,7 +276,9 @@ class Scene(Showing):
             The motion reaches a place where the mechanism does not close or jams, or takes more steps than are allowed.
         """
         if not duration > 0 or not math.isfinite(duration):
-            raise WrongValue(f"a duration is a positive number of seconds; found {duration}")
+            raise WrongValue(
+                "a duration is a positive number of seconds; found {duration}", duration=duration
+            )
         motor = drive if isinstance(drive, Motor) else Motor(float(drive))
         running = self.running(motor)
         start = math.radians(self._start_angle)
@@ -283,7 +291,11 @@ class Scene(Showing):
         try:
             return self.exercise.driver_angle(self._accepted)
         except CourseworkError as fault:
-            raise WrongValue(f"a motion starts from {self.driver.angle}; it is not given ({fault})") from None
+            raise WrongValue(
+                "a motion starts from {angle}; it is not given ({fault})",
+                angle=self.driver.angle,
+                fault=fault,
+            ) from None
 
     def _motion_table(self, motion: Trajectory, running: Running, motor: Motor, t: np.ndarray) -> SceneTable:
         (angle, speed, work), ways = motion.at(t)

@@ -121,22 +121,27 @@ class Showing(Staged):
     def _coriolis_points(self) -> tuple[str, ...]:
         if self.exercise.solution.mechanism is None:
             raise WrongValue(
-                f"{self.exercise.name} has no Coriolis term to show: its solution states no MECHANISM, and no "
-                "EFFECTS of coriolis"
+                "{exercise} has no Coriolis term to show: its solution states no MECHANISM, and no EFFECTS of coriolis",
+                exercise=self.exercise.name,
             )
         points = tuple(s.name.removesuffix(" slide") for s in shown.turning_slides(self.linkage))
         if not points:
-            raise WrongValue(f"{self.exercise.name} has no Coriolis term: no body slides on one that turns")
+            raise WrongValue(
+                "{exercise} has no Coriolis term: no body slides on one that turns",
+                exercise=self.exercise.name,
+            )
         return points
 
     def _check_shown(self, name: str) -> None:
         if "," in name and shown.split_request(name)[1] not in self.exercise.quantity_names:
-            raise WrongValue(f"{name!r} names several things to show; name one at a time: --show A --show B")
+            raise WrongValue(
+                "{name!r} names several things to show; name one at a time: --show A --show B", name=name
+            )
         if name in self.exercise.quantity_names:
             if self.has_own_data and name in self._of_own_forces:
                 raise WrongValue(
-                    f"{name} follows from the exercise's own data, and the scene brings others: show drive_torque, "
-                    "'reaction B'"
+                    "{name} follows from the exercise's own data, and the scene brings others: show drive_torque, 'reaction B'",
+                    name=name,
                 )
             return
         if self.exercise.solution.mechanism is None:
@@ -162,7 +167,10 @@ class Showing(Staged):
         """Return the mechanical advantage: the driver's speed over that of its output."""
         output = self.driver.output
         if not output or not self.driver.speed:
-            raise WrongValue(f"{self.exercise.name}: its driver names no output, so no advantage is known")
+            raise WrongValue(
+                "{exercise}: its driver names no output, so no advantage is known",
+                exercise=self.exercise.name,
+            )
         speed = np.abs(
             np.asarray(self.exercise.solve(**driven, only=output, effects=())[output], dtype=float)
         )

@@ -43,13 +43,13 @@ def check(name: str, linkage: Linkage, quantities: Iterable[str]) -> None:
     if kind == REACTION:
         joints = [*joint_points(linkage)]
         if of not in joints:
-            raise unknown("joint", of, joints, "the mechanism")
+            raise unknown("joint", of, joints, Message("the mechanism"))
     elif kind == "coriolis":
         if of not in [s.name.removesuffix(" slide") for s in turning_slides(linkage)]:
-            raise WrongValue(f"no Coriolis term at {of}: no body slides there on one that turns")
+            raise WrongValue("no Coriolis term at {of}: no body slides there on one that turns", of=of)
     elif kind:
         if of not in linkage.mechanism.points:
-            raise unknown("point", of, linkage.mechanism.points, "the mechanism")
+            raise unknown("point", of, linkage.mechanism.points, Message("the mechanism"))
     elif of == "drive_thrust" and linkage.pushed is None:
         raise WrongValue(Message("no jack drives the mechanism; show drive_torque"))
     elif of == "drive_torque" and linkage.pushed is not None:

@@ -19,6 +19,7 @@ from coursework.mechanics.linkage import MM, Linkage
 from coursework.mechanics.loads import AppliedLoad
 from coursework.mechanics.rates import Stance
 from coursework.mechanics.statement import Load, Mechanism, number, parameters
+from coursework.messages import Message
 from coursework.model import Driver
 from coursework.quantities.loops import usual_rates
 from coursework.scenes.added import SceneData
@@ -43,10 +44,12 @@ class Staged:
         for before, effect in enumerate(self.effects):
             check_effect(effect, self.exercise)
             if effect in self.effects[:before]:
-                raise WrongValue(f"the effect {effect!r} is named twice")
+                raise WrongValue("the effect {effect!r} is named twice", effect=effect)
         for name, value in self._accepted.items():
             if isinstance(value, np.ndarray):
-                raise WrongValue(f"a scene takes one value of {name}; found {value.size}")
+                raise WrongValue(
+                    "a scene takes one value of {name}; found {size}", name=name, size=value.size
+                )
         if self._forces_called and not self._graph_effects:
             self.mechanism  # noqa: B018  # is refused here where there is none
 
@@ -300,14 +303,16 @@ class Staged:
         for position in (load.force, load.moment, load.angle):
             if callable(position) and self.moved.intersection(parameters(position)):
                 raise WrongValue(
-                    f"the load on {load.on} goes by a function of {', '.join(parameters(position))}, which the driver moves; make "
-                    "it a quantity of the solution, and name that"
+                    "the load on {place} goes by a function of {parameters}, which the driver moves; make it a quantity of the solution, and name that",
+                    place=load.on,
+                    parameters=", ".join(parameters(position)),
                 )
         for name in (load.by, *(n for p in (load.force, load.moment, load.angle) for n in parameters(p))):
             if name in self._sped:
                 raise WrongValue(
-                    f"the load on {load.on} goes by {name}, which changes with the driver's speed; a load goes by an angle, a "
-                    "position, or against the motion"
+                    "the load on {place} goes by {name}, which changes with the driver's speed; a load goes by an angle, a position, or against the motion",
+                    place=load.on,
+                    name=name,
                 )
         return AppliedLoad(self.linkage, load, self._position)
 
@@ -338,7 +343,8 @@ class Staged:
         """Evenness of the turn at the given constant speed, without a flywheel."""
         if not self._speed:
             raise WrongValue(
-                f"a flywheel is sized for a speed: {self.driver.speed or 'it'} is 0 or not given"
+                "a flywheel is sized for a speed: {speed} is 0 or not given",
+                speed=self.driver.speed or Message("the speed"),
             )
         angles, speed = np.arange(_JUDGED) * (2 * np.pi / _JUDGED), np.full(_JUDGED, self._speed)
         without = replace(self.without(FLYWHEEL), show=())

@@ -18,6 +18,7 @@ from coursework.issuing.issuing import distinct_variants
 from coursework.language.words import words
 from coursework.marking.marking import mark as grade
 from coursework.markup.shown import NotebookDisplay, SvgPicture
+from coursework.messages import Message
 from coursework.rendering.views import ROOM_ALONE, ROOM_BESIDE, offered
 from coursework.selfstudy import hints
 from coursework.selfstudy.attempt import sentence_of, sign_of
@@ -373,7 +374,11 @@ def worked(
         The course folder has no solutions.
     """
     if level not in range(BARE + 1):
-        raise WrongValue(f"a worked example has a level from 0, the whole, to {BARE}, bare; found {level!r}")
+        raise WrongValue(
+            "a worked example has a level from 0, the whole, to {most}, bare; found {level!r}",
+            most=BARE,
+            level=level,
+        )
     opened = course[exercise]
     opened.solution  # noqa: B018  what has none is refused here
     chosen = opened.chosen_parts(parts or None)
@@ -381,7 +386,12 @@ def worked(
     by_id = {part.id: part for part in variant.parts}
     for part in parts:
         if part not in {*by_id, USUAL, ALL}:
-            raise unknown("part", part, tuple(by_id), f"{exercise}, variant {seed}")
+            raise unknown(
+                "part",
+                part,
+                tuple(by_id),
+                Message("{exercise}, variant {seed}", exercise=exercise, seed=seed),
+            )
     requested = variant.parts if chosen is None else [part for part in chosen if part.id in by_id]
     return WorkedExample(variant, level, requested)
 
@@ -389,7 +399,12 @@ def worked(
 @lru_cache(maxsize=64)
 def _explained(exercise: Any, name: str, lang: str, seed: int) -> str:
     if name not in exercise.solution.mistakes:
-        raise unknown("mistake", name, exercise.solution.mistakes, f"solution {exercise.name}")
+        raise unknown(
+            "mistake",
+            name,
+            exercise.solution.mistakes,
+            Message("solution {exercise}", exercise=exercise.name),
+        )
     section = exercise.variant(seed, lang).solution_text.sections.get(f"mistake {name}")
     if section is None:
         raise BadCourse(f"{exercise.name}: the solution's text has no section 'mistake {name}'")

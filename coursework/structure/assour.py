@@ -109,11 +109,13 @@ def decompose(joints: JointGraph | Iterable[Record], driver: Sequence[int]) -> D
     body = driven_body(graph, driver)
     counts = graph.counts
     if counts.h:
-        raise Undefined(f"Assour groups have lower pairs alone; this mechanism has {counts.h} higher")
+        raise Undefined("Assour groups have lower pairs alone; this mechanism has {h} higher", h=counts.h)
     if counts.w != 1:
-        raise Undefined(f"one driver asks for w = 3 n - 2 b = 1; this mechanism has w = {counts.w}")
+        raise Undefined("one driver asks for w = 3 n - 2 b = 1; this mechanism has w = {w}", w=counts.w)
     if sum({FRAME, body} <= set(joint.bodies) for joint in graph.joints) > 1:
-        raise Undefined(f"several joints hold body {body} to the frame: as a driver it could not move")
+        raise Undefined(
+            "several joints hold body {body} to the frame: as a driver it could not move", body=body
+        )
     return Decomposition(body, _ordered(graph, body, _rings(graph, body)))
 
 
@@ -142,12 +144,16 @@ def driven_body(graph: JointGraph, driver: Sequence[int]) -> int:
     except (TypeError, ValueError):
         wrong = True
     if wrong:
-        raise WrongValue(f"driver must be [1, body], a body joined to the frame; found {driver!r}")
+        raise WrongValue(
+            "driver must be [1, body], a body joined to the frame; found {driver!r}", driver=driver
+        )
     body = max(numbers)
     if body not in drivers(graph):
         able = ", ".join(map(str, drivers(graph)))
         raise WrongValue(
-            f"driver: no lower pair joins body {body} to the frame; bodies that have one: {able}"
+            "driver: no lower pair joins body {body} to the frame; bodies that have one: {able}",
+            body=body,
+            able=able,
         )
     return body
 
@@ -250,7 +256,8 @@ def _given_out(conditions: Sequence[tuple[Node, Node]], placed: set[Node]) -> li
             if not settle(number, tried):
                 crowd = sorted(n for kind, n in tried if kind == "body") or [n for _, n in ends]
                 raise Undefined(
-                    f"bodies {crowd} have more pairs than can move: a part of the mechanism is held twice"
+                    "bodies {crowd} have more pairs than can move: a part of the mechanism is held twice",
+                    crowd=crowd,
                 )
     return shares
 

@@ -14,6 +14,7 @@ from numbers import Integral
 from typing import Any, NamedTuple
 
 from coursework.errors import WrongValue, nearest
+from coursework.messages import Message
 
 FRAME = 1  #: the number of the frame
 KINDS = ("revolute", "prismatic", "higher")
@@ -77,7 +78,7 @@ class JointGraph:
         if isinstance(records, JointGraph):
             return records
         if isinstance(records, (str, Mapping)) or not isinstance(records, Iterable):
-            raise WrongValue(f"joints must be a list of records; found {str(records)[:60]!r}")
+            raise WrongValue("joints must be a list of records; found {records!r}", records=str(records)[:60])
         joints = _merged([_joint(record, number) for number, record in enumerate(records, start=1)])
         _check_bodies(joints)
         return JointGraph(tuple(sorted(joints)))
@@ -187,36 +188,59 @@ def _path_to_frame(parents: Mapping[int, int], body: int) -> list[int]:
 
 
 def _joint(record: Any, number: int) -> PlaneJoint:
-    where = f"joint {number} of the list"
+    where = Message("joint {number} of the list", number=number)
     if isinstance(record, PlaneJoint):
         record = {"between": record.bodies, "kind": record.kind, "at": record.at}
     if not isinstance(record, Mapping):
-        raise WrongValue(f"{where} must be a record with 'between' and 'kind'; found {str(record)[:60]!r}")
+        raise WrongValue(
+            "{where} must be a record with 'between' and 'kind'; found {record!r}",
+            where=where,
+            record=str(record)[:60],
+        )
     for key in record:
         if key not in _KEYS:
-            raise WrongValue(f"{where} has a key {key!r}{nearest(str(key), _KEYS)}")
+            raise WrongValue(
+                "{where} has a key {key!r}{nearest}", where=where, key=key, nearest=nearest(str(key), _KEYS)
+            )
     for key in _KEYS[:2]:
         if key not in record:
-            raise WrongValue(f"{where} lacks {key!r}")
+            raise WrongValue("{where} lacks {key!r}", where=where, key=key)
     kind = record["kind"]
     if kind not in KINDS:
-        raise WrongValue(f"{where}: no kind {kind!r}{nearest(str(kind), KINDS)}")
+        raise WrongValue(
+            "{where}: no kind {kind!r}{nearest}", where=where, kind=kind, nearest=nearest(str(kind), KINDS)
+        )
     bodies = _bodies(record["between"], where)
     if len(bodies) > 2 and kind != "revolute":
-        raise WrongValue(f"{where}: only a pivot joins more than two bodies; found {kind} between {bodies}")
+        raise WrongValue(
+            "{where}: only a pivot joins more than two bodies; found {kind} between {bodies}",
+            where=where,
+            kind=kind,
+            bodies=bodies,
+        )
     at = record.get("at")
     return PlaneJoint(bodies, str(kind), "" if at is None else str(at))
 
 
 def _bodies(between: Any, where: str) -> tuple[int, ...]:
     if not isinstance(between, Sequence) or isinstance(between, str):
-        raise WrongValue(f"{where}: 'between' must list bodies; found {between!r}")
+        raise WrongValue(
+            "{where}: 'between' must list bodies; found {between!r}", where=where, between=between
+        )
     for body in between:
         if isinstance(body, bool) or not isinstance(body, Integral) or body < 1:
-            raise WrongValue(f"{where}: a body is a whole number from 1, the frame, on; found {body!r}")
+            raise WrongValue(
+                "{where}: a body is a whole number from 1, the frame, on; found {body!r}",
+                where=where,
+                body=body,
+            )
     bodies = tuple(sorted({int(body) for body in between}))
     if len(bodies) < 2 or len(bodies) < len(between):
-        raise WrongValue(f"{where} must join different bodies, two at least; found {list(between)}")
+        raise WrongValue(
+            "{where} must join different bodies, two at least; found {between}",
+            where=where,
+            between=list(between),
+        )
     return bodies
 
 
@@ -236,7 +260,11 @@ def _one_pivot(label: str, joints: list[PlaneJoint]) -> PlaneJoint:
         touching = [joint for joint in rest if together & set(joint.bodies)]
         if not touching:
             apart = " and ".join(str(list(b)) for b in (sorted(together), rest[0].bodies))
-            raise WrongValue(f"the pivots at {label!r} share no body: {apart}; give them different labels")
+            raise WrongValue(
+                "the pivots at {label!r} share no body: {apart}; give them different labels",
+                label=label,
+                apart=apart,
+            )
         together = together.union(*[joint.bodies for joint in touching])
         rest = [joint for joint in rest if joint not in touching]
     return PlaneJoint(tuple(sorted(together)), "revolute", label)
@@ -253,7 +281,7 @@ def _check_bodies(joints: Sequence[PlaneJoint]) -> None:
     bodies = {body for joint in joints for body in joint.bodies}
     missing = next((n for n, body in enumerate(sorted(bodies), start=FRAME) if n != body), None)
     if missing is not None:
-        subject = "the frame, 1," if missing == FRAME else f"body {missing}"
-        raise WrongValue(f"{subject} has no joint; bodies are numbered from 1 without a gap")
+        subject = Message("the frame, 1,") if missing == FRAME else Message("body {body}", body=missing)
+        raise WrongValue("{subject} has no joint; bodies are numbered from 1 without a gap", subject=subject)
     if bodies - linked:
-        raise WrongValue(f"bodies {sorted(bodies - linked)} are not linked to the frame, 1")
+        raise WrongValue("bodies {bodies} are not linked to the frame, 1", bodies=sorted(bodies - linked))

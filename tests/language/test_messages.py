@@ -44,6 +44,21 @@ FOR_USERS = {
     "warn",
 }
 
+#: What the numeric core, mechanics, scenes and figures refuse: read by those who solve, simulate, explore and learn.
+OF_NUMBERS = {
+    "WrongValue",
+    "WrongUnit",
+    "CannotAssemble",
+    "CannotTell",
+    "Undefined",
+    "Cycle",
+    "Starved",
+    "NotEvaluable",
+}
+
+#: Files whose errors only an author of exercises in Python reads.
+FOR_AUTHORS = ("model.py", "kinds/")
+
 #: Readers of TOML files, which refuse a key by a template.
 REFUSING = (
     "scenes/scene_files",
@@ -63,7 +78,7 @@ def calls():
             if getattr(node.func, "attr", "") in ("refused", "refused_key") and file.startswith(REFUSING):
                 name, arguments = "Message", arguments[1:]  # behind the key of the file
                 keywords = [word for word in keywords if word.arg != "exercise"]
-            if (name in FOR_USERS or (name == "WrongValue" and file.startswith("cli/"))) and arguments:
+            if (name in FOR_USERS or (name in OF_NUMBERS and not file.startswith(FOR_AUTHORS))) and arguments:
                 first = arguments[0]
                 for template in (first.body, first.orelse) if isinstance(first, ast.IfExp) else (first,):
                     yield f"{file}:{template.lineno}", template, keywords
@@ -93,6 +108,27 @@ def test_each_message_has_a_translation_with_the_same_places(lang):
         return None
 
     found = {place: why for place, *call in calls() if (why := fault(*call))}
+    assert found == {}
+
+
+@pytest.mark.parametrize("lang", [lang for lang in languages() if lang != "en"])
+def test_what_is_looked_up_in_vain_is_named_in_the_readers_language(lang):
+    """And where it was looked for: a name alone, or a message."""
+    known, found = translations(lang), {}
+    for file, calls_ in nodes(ast.Call).items():
+        for node in calls_:
+            if getattr(node.func, "id", "") != "unknown":
+                continue
+            kind, where = node.args[0], node.args[3] if len(node.args) > 3 else None
+            if (
+                isinstance(kind, ast.Constant)
+                and f"no {kind.value} {{name!r}}{{place}}{{nearest}}" not in known
+            ):
+                found[f"{file}:{node.lineno}"] = kind.value
+            pieces = getattr(where, "values", [where])
+            texts = [piece.value for piece in pieces if isinstance(piece, ast.Constant)]
+            if any(text[:1].isalpha() or text[:2].lstrip(", ").isalpha() for text in texts):
+                found[f"{file}:{node.lineno}, where"] = ast.unparse(where)
     assert found == {}
 
 

@@ -22,6 +22,7 @@ from dataclasses import dataclass, field
 
 from coursework.errors import WrongValue, unknown
 from coursework.figures.polygons.polygon import Polygon, Side
+from coursework.messages import Message
 
 TOLERANCE_MM = 1.0  #: by which each drawn point may be off
 LEAST_MM = 20.0  #: of the longest vector, for tolerances of a millimetre; below, directions tell nothing
@@ -200,14 +201,16 @@ def judge_drawing(
     """
     for name, z in points.items():
         if name not in polygon.points:
-            raise unknown("point", name, polygon.points, "polygon")
+            raise unknown("point", name, polygon.points, Message("the polygon"))
         if not cmath.isfinite(z):
-            raise WrongValue(f"point {name} of a drawing is {z}, not finite")
+            raise WrongValue("point {name} of a drawing is {z}, not finite", name=name, z=z)
     if polygon.pole not in points:
-        raise WrongValue(f"a drawing is judged from its pole {polygon.pole}, which is not among its points")
+        raise WrongValue(
+            "a drawing is judged from its pole {pole}, which is not among its points", pole=polygon.pole
+        )
     if scale is not None and not is_scale(polygon, scale):
         raise WrongValue(
-            f"a scale of a drawing is positive, and so large that it fits on paper; found {scale}"
+            "a scale of a drawing is positive, and so large that it fits on paper; found {scale}", scale=scale
         )
     points = {name: on_paper(z.real, z.imag) for name, z in points.items()}
     width = 2 * tolerance

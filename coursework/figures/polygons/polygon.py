@@ -29,6 +29,7 @@ from functools import cached_property
 from types import MappingProxyType
 
 from coursework.errors import BadCourse, unknown
+from coursework.messages import Message
 
 UNITS = {"velocity": "mm/s", "acceleration": "mm/s^2", "position": "mm"}
 _CLOSED = 1e-6  #: of the longest side: what two ways to one point may differ by
@@ -209,7 +210,9 @@ class Polygon:
         for side in self.sides:
             if (side.start, side.end) == (start, end):
                 return side
-        raise unknown("side", f"{start} {end}", [f"{s.start} {s.end}" for s in self.sides], "polygon")
+        raise unknown(
+            "side", f"{start} {end}", [f"{s.start} {s.end}" for s in self.sides], Message("the polygon")
+        )
 
     @cached_property
     def _drawn(self) -> tuple[dict[str, complex], tuple[Stage, ...]]:

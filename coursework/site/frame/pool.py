@@ -65,7 +65,7 @@ class PracticePool:
             seeds = self._extended(exercise, 2 * len(seeds)).seeds
             left = [seed for seed in seeds if seed not in begun]
         if not seeds:
-            raise Starved(f"{exercise}: no variant that is worth issuing was found")
+            raise Starved("{exercise}: no variant that is worth issuing was found", exercise=exercise)
         return left or list(seeds)
 
     def _is_issued(self, exercise: str, seed: int) -> bool:

@@ -179,7 +179,7 @@ def _three(along: str) -> Whole:
         x, y, z = map(int, along.split())
     except ValueError:
         raise WrongValue(
-            f"a direction is x, y, z or three whole numbers such as '3 4 0'; found {along[:40]!r}"
+            "a direction is x, y, z or three whole numbers such as '3 4 0'; found {along!r}", along=along[:40]
         ) from None
     if not (x or y or z):
         raise WrongValue("a direction has a number that is not 0; found '0 0 0'")

@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 
 from coursework.errors import WrongValue
+from coursework.messages import Message
 from coursework.structure.spatial_chains.joints import Joint, TwistReference, Vector, read_joints
 from coursework.structure.spatial_chains.ranks import Rank, rank_of
 
@@ -37,11 +38,18 @@ class _Loops:
         self.n = max(max(ends) for ends in self._ends)  #: moving bodies
         for first, other in self._ends:
             if first == other:
-                raise WrongValue(f"a joint lies between two different bodies; found {[first, other]}")
+                raise WrongValue(
+                    "a joint lies between two different bodies; found {found}", found=[first, other]
+                )
         self._paths = self._walk()
         for name, body in (("input", inputs), ("output", outputs)):
             if body is not None and not 0 < body <= self.n:
-                raise WrongValue(f"the {name} body is one of 1 to {self.n}; found {body}")
+                raise WrongValue(
+                    "the {name} body is one of 1 to {n}; found {body}",
+                    name=Message(name),
+                    n=self.n,
+                    body=body,
+                )
 
     def _walk(self) -> list[dict[int, int]]:
         """Return for each body the joints from the frame to it, with the sense in which each is crossed: a
@@ -58,7 +66,7 @@ class _Loops:
         lost = [body for body in range(self.n + 1) if body not in paths]
         if lost:
             raise WrongValue(
-                f"bodies {lost} are not linked to the frame; number the bodies from 0 without holes"
+                "bodies {lost} are not linked to the frame; number the bodies from 0 without holes", lost=lost
             )
         return [paths[body] for body in range(self.n + 1)]
 
@@ -207,8 +215,11 @@ def _projected(name: str, frame: tuple[Vector, Vector, Vector], pitch: float) ->
         if min(across, along) > _IN_PLANE_OR_SQUARE:
             x, y, z = vector
             raise WrongValue(
-                "in a plane problem axes and normals lie in the plane xy or along z; "
-                f"that of a {name} is ({x:.6g}, {y:.6g}, {z:.6g})"
+                "in a plane problem axes and normals lie in the plane xy or along z; that of a {name} is ({x:.6g}, {y:.6g}, {z:.6g})",
+                name=Message(name),
+                x=x,
+                y=y,
+                z=z,
             )
     here = (0.0, 0.0, 0.0)
     rows = np.array(Joint(name, frame, here, pitch).twists(here, 1.0)).reshape(-1, 6)[:, _IN_PLANE]

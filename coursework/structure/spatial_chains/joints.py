@@ -17,6 +17,7 @@ from functools import cached_property, lru_cache
 from typing import Any
 
 from coursework.errors import WrongValue, unknown
+from coursework.messages import Message
 
 Vector = tuple[float, float, float]
 
@@ -265,19 +266,26 @@ def joint_of(given: Mapping[str, Any]) -> Joint:
         are not perpendicular.
     """
     if not isinstance(given, Mapping) or "joint" not in given:
-        raise WrongValue(f"a joint is a mapping with a key 'joint'; found {str(given)[:80]!r}")
+        raise WrongValue("a joint is a mapping with a key 'joint'; found {given!r}", given=str(given)[:80])
     name = given["joint"]
     if name not in _KINDS:
         raise unknown("joint", str(name), JOINTS)
     kind = _KINDS[name]
     for key in kind.needs:
         if key not in given:
-            raise WrongValue(f"a joint {name!r} needs {', '.join(kind.needs)}; {key!r} is missing")
+            raise WrongValue(
+                "a joint {name!r} needs {needs}; {key!r} is missing",
+                name=name,
+                needs=", ".join(kind.needs),
+                key=key,
+            )
     point = _vector(given, "point") if "point" in kind.needs else None
     pitch = _number(given["pitch"], "pitch") if "pitch" in kind.needs else 0.0
     between = given.get("between", (0, 1))
     if len(between) != 2 or any(isinstance(b, bool) or int(b) != b or b < 0 for b in between):
-        raise WrongValue(f"'between' names two bodies by whole numbers from 0 on; found {between!r}")
+        raise WrongValue(
+            "'between' names two bodies by whole numbers from 0 on; found {between!r}", between=between
+        )
     return Joint(name, _frame(given, kind, name), point, pitch, (int(between[0]), int(between[1])))
 
 
@@ -299,7 +307,7 @@ def joints_of(given: Iterable[Mapping[str, Any]]) -> tuple[Joint, ...]:
         As :func:`joint_of`; an empty list.
     """
     if isinstance(given, (Mapping, str)) or not isinstance(given, Iterable):
-        raise WrongValue(f"a list of joints is a list of mappings; found {str(given)[:60]!r}")
+        raise WrongValue("a list of joints is a list of mappings; found {given!r}", given=str(given)[:60])
     joints = tuple(joint_of(item) for item in given)
     if not joints:
         raise WrongValue("a list of joints must hold at least one")
@@ -339,7 +347,9 @@ def _frame(given: Mapping[str, Any], kind: JointKind, name: str) -> tuple[Vector
     n = _direction(given, "normal")
     if abs(dot(u, n)) > _SQUARE:
         raise WrongValue(
-            f"the axis and the normal of a {name} must be perpendicular; the cosine of their angle is {dot(u, n):.3g}"
+            "the axis and the normal of a {name} must be perpendicular; the cosine of their angle is {cosine:.3g}",
+            name=Message(name),
+            cosine=dot(u, n),
         )
     w = unit(cross(u, n))
     return u, cross(w, u), w
@@ -348,7 +358,7 @@ def _frame(given: Mapping[str, Any], kind: JointKind, name: str) -> tuple[Vector
 def _vector(given: Mapping[str, Any], key: str) -> Vector:
     values = given[key]
     if isinstance(values, str) or not hasattr(values, "__len__") or len(values) != 3:
-        raise WrongValue(f"{key!r} is three numbers; found {str(values)[:60]!r}")
+        raise WrongValue("{key!r} is three numbers; found {values!r}", key=key, values=str(values)[:60])
     x, y, z = (_number(value, key) for value in values)
     return x, y, z
 
@@ -357,7 +367,7 @@ def _direction(given: Mapping[str, Any], key: str) -> Vector:
     vector = _vector(given, key)
     largest = max(abs(x) for x in vector)
     if not largest:
-        raise WrongValue(f"{key!r} must have a direction; found (0, 0, 0)")
+        raise WrongValue("{key!r} must have a direction; found (0, 0, 0)", key=key)
     return unit([x / largest for x in vector])
 
 
@@ -367,7 +377,7 @@ def _number(value: Any, key: str) -> float:
     except (TypeError, ValueError):
         number = math.nan
     if not math.isfinite(number):
-        raise WrongValue(f"{key!r} must hold finite numbers; found {str(value)[:60]!r}")
+        raise WrongValue("{key!r} must hold finite numbers; found {value!r}", key=key, value=str(value)[:60])
     return number
 
 

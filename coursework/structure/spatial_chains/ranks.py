@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from coursework.errors import CannotTell
+from coursework.messages import Message
 
 ZERO = 1e-11  #: what rounding leaves of a zero, relative to the largest; with it, what is smaller
 DISTINCT = 1e-7  #: what surely is no zero; two axes 1e-4 apart stay well above it
@@ -49,8 +50,11 @@ def is_zero(value: float, subject: str) -> bool:
     size = abs(value)
     if ZERO < size < DISTINCT:
         raise CannotTell(
-            f"cannot tell whether {subject}: it is off by {size:.2g} of the whole, less than {DISTINCT:g}, "
-            f"which would be meant, and more than {ZERO:g}, which would be rounding"
+            "cannot tell whether {subject}: it is off by {size:.2g} of the whole, less than {distinct:g}, which would be meant, and more than {zero:g}, which would be rounding",
+            subject=Message(subject),
+            size=size,
+            distinct=DISTINCT,
+            zero=ZERO,
         )
     return size <= ZERO
 
@@ -88,9 +92,11 @@ def decompose(
     doubtful = relative[(relative > ZERO) & (relative < DISTINCT)]
     if len(doubtful):
         raise CannotTell(
-            f"cannot tell the rank of {subject}: a singular value is {doubtful[0]:.2g} of the largest, neither a zero "
-            f"(below {ZERO:g}) nor distinct from it (above {DISTINCT:g}); are two axes meant to be parallel, "
-            "or two points to coincide?"
+            "cannot tell the rank of {subject}: a singular value is {size:.2g} of the largest, neither a zero (below {zero:g}) nor distinct from it (above {distinct:g}); are two axes meant to be parallel, or two points to coincide?",
+            subject=Message(subject),
+            size=doubtful[0],
+            zero=ZERO,
+            distinct=DISTINCT,
         )
     rank = int((relative > ZERO).sum())
     stored = float(relative[rank - 1]) if rank else 1.0
