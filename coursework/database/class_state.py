@@ -63,6 +63,11 @@ class UnplacedRow:
         """Reason of the rejection, in the language of the current messages."""
         return localised(self.row.reason)
 
+    @property
+    def place(self) -> str:
+        """Place of the row in its file, in the language of the current messages."""
+        return localised(self.row.place)
+
 
 @dataclass(frozen=True)
 class OpenGroup:

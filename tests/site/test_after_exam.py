@@ -93,7 +93,7 @@ def test_provisional_marks_are_named_and_left_out_and_non_answers_put_away(desk)
     reply = browser.fill(f"/desk/{desk.number}/gradebook", sent, files={"template": ("book.csv", book)})
     assert re.search(r"2 provisional marks left out.*Ada, Bo", reply.text)
     reply = browser.fill(f"/desk/{desk.number}/after", {"do": "put_away"})
-    assert "Put them away" in reply.text
+    assert "Saved. Answers that say nothing, put away: 1." in reply.text
     provisional = [name for name, result in class_now(desk.site, desk.number).results.items() if result.open]
     assert provisional == ["Bo"]
     assert "put away: 1" in desk.page(TEACHER, "/after").text

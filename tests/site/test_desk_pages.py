@@ -6,7 +6,7 @@ import re
 import zipfile
 
 import pytest
-from desk_class import EXERCISE, SEED, DeskClass, told
+from desk_class import EXERCISE, SEED, STUDENTS, DeskClass, told
 from rows_of_strangers import FORMULA, computed_cells
 from site_people import TEACHER
 from sqlalchemy import select
@@ -121,6 +121,20 @@ def test_answers_come_in_once_and_are_marked(desk):
     )
     now = class_now(desk.site, desk.number)
     assert [one.row.source for one in now.rejected] == ["late.csv, line 3"]
+    assert "late.csv, ligne 3" in desk.page(TEACHER, "/files", lang="fr").text
+
+
+def test_papers_are_typed_into_an_empty_table_of_the_class(desk):
+    reply = desk.page(TEACHER, "/files/answers_wide.csv", lang="fr")
+    header, *lines = reply.content.decode("utf-8-sig").splitlines()
+    place = header.split(";").index(f"1.1 {EXERCISE} rA (mm)")
+    assert [line.split(";")[0] for line in lines] == list(STUDENTS)
+    cells = [*lines[-1].split(";")]
+    cells[place] = "123,4"
+    typed = "\n".join([header, *lines[:-1], ";".join(cells)]).encode()
+    desk.browser(TEACHER).fill(f"/desk/{desk.number}/answers", files={"answers": ("papers.csv", typed)})
+    marks = class_now(desk.site, desk.number).machine
+    assert next(g for key, g in marks.items() if key[0] == STUDENTS[-1]).lines["rA"].answer == "123,4"
 
 
 def test_a_zip_of_answers_is_read_and_one_that_is_a_bomb_is_refused(desk):

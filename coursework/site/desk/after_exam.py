@@ -83,7 +83,8 @@ def _done(request: Request, exam: Exam) -> str:
     texts, by = words(request.lang)["after"], request.actor.name
     asked = request.form.text("do")
     if asked == "put_away":
-        kept, done = exam.put_away(by, texts["put_away_why"]), texts["put_away"]
+        kept = exam.put_away(by, texts["put_away_why"])
+        done = str(texts["aside"]).format(len(kept))
     elif asked == "undo":
         undone = _undone(exam, request.form.text("undo"))
         kept = undoing(undone, by)

@@ -28,6 +28,7 @@ from coursework.gradebook.platform_gradebooks import PLATFORMS, platform_gradebo
 from coursework.gradebook.rows import AnswerRow, PlatformFile, Rejected
 from coursework.issuing.issued import COLUMNS
 from coursework.messages import as_message, localised
+from coursework.sheets.units import units_text
 from coursework.site.desk import uploads
 from coursework.site.desk.class_cache import class_here, class_page_of
 from coursework.site.desk.question_cards import moment
@@ -261,6 +262,22 @@ def _submissions(request: Request, now: ClassState) -> bytes:
     return csv_file(({c: str(row[c]) for c in _DELIVERIES} for row in rows), _DELIVERIES)
 
 
+def _wide(request: Request, now: ClassState) -> bytes:
+    """Return an empty table for answers on paper: a line for each student, a column for each question."""
+    variants = {
+        name: now.course[name].from_record(record) for (name, _), record in now.issued.records.items()
+    }
+    titles = []
+    for exercise, part in now.questions:
+        own = next((p for p in variants[exercise].parts if p.id == part), None)
+        unit = units_text(own, request.lang, variants[exercise]) if own else ""
+        titles.append(f"{now.number(exercise, part)} {exercise} {part}" + (f" ({unit})" if unit else ""))
+    rows = ({"student": now.shown(name), **dict.fromkeys(titles, "")} for name in now.issued.students)
+    return csv_file(rows, ("student", *titles), spreadsheet_of(request))
+
+
+WIDE = "answers_wide.csv"
+
 #: Makers of the tables, by file name.
 _TABLES: Mapping[str, Callable[[Request, ClassState], bytes]] = {
     "marks.csv": _marks,
@@ -293,6 +310,8 @@ def table(request: Request) -> Response:
         if now.is_whole and not now.codes:
             files["deliveries.csv"] = _submissions(request, now)
         return Download(zipped(files), "application/zip", f"{_safe(now.about.name)}.zip")
+    if name == WIDE:
+        return Download(_wide(request, now), "text/csv; charset=utf-8", name)
     if name not in tables:
         raise HTTPException("page", 404)
     kind = "application/json" if name.endswith(".json") else "text/csv; charset=utf-8"
