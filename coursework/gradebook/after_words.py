@@ -42,7 +42,7 @@ def stroke_texts(exam: Exam, steps: Iterable[Decision], lang: str) -> list[tuple
     return [(first, text if count == 1 else several.format(text, count)) for first, text, count in texts]
 
 
-class _Error(NamedTuple):
+class _PricedError(NamedTuple):
     exercise: str
     kind: str
     name: str
@@ -55,7 +55,7 @@ def error_text(exam: Exam, exercise: str, verdict: str, lang: str) -> str:
     if not name:
         return told
     asked = [exercise] if exercise else exam.issued.exercises
-    says = (Names(exam.course, None, lang).mistake(_Error(one, family, name), _LONGEST) for one in asked)
+    says = (Names(exam.course, None, lang).mistake(_PricedError(one, family, name), _LONGEST) for one in asked)
     return f"{told}{words(lang)['sheet']['colon']} {next((text for text in says if text != name), name)}"
 
 
