@@ -55,7 +55,9 @@ def error_text(exam: Exam, exercise: str, verdict: str, lang: str) -> str:
     if not name:
         return told
     asked = [exercise] if exercise else exam.issued.exercises
-    says = (Names(exam.course, None, lang).mistake(_PricedError(one, family, name), _LONGEST) for one in asked)
+    says = (
+        Names(exam.course, None, lang).mistake(_PricedError(one, family, name), _LONGEST) for one in asked
+    )
     return f"{told}{words(lang)['sheet']['colon']} {next((text for text in says if text != name), name)}"
 
 

@@ -65,7 +65,7 @@ class FieldText:
 
 
 @dataclass(frozen=True)
-class _Read:
+class _ReadNumber:
     """One box as read: its digit, -1 for an empty one, the confidence in it, and the digits that it may be."""
 
     digit: int = -1
@@ -113,7 +113,7 @@ def _written(
 ) -> FieldText:
     """Return the reading of a row that is not empty."""
     rows = [[*field.digits, *field.decimals], list(field.power)]
-    boxes: dict[Box, _Read] = {}
+    boxes: dict[Box, _ReadNumber] = {}
     reason = "digit" if any(runs_through(page, box) for box, empty in bare.items() if not empty) else ""
     has_bar = False
     for row in rows:
@@ -159,16 +159,16 @@ def _likeliest(
     return found
 
 
-def _digits(pictures: Sequence[np.ndarray], bare: Sequence[bool], reader: Reader) -> list[_Read]:
+def _digits(pictures: Sequence[np.ndarray], bare: Sequence[bool], reader: Reader) -> list[_ReadNumber]:
     """Return each box as read; what is neither bare nor a digit is read with no confidence."""
-    found = [_Read()] * len(bare)
+    found = [_ReadNumber()] * len(bare)
     inked = [k for k, empty in enumerate(bare) if not empty]
     if inked:
         read, sure, *chances = reader(np.stack([_framed(pictures[k]) for k in inked]))
         for place, k in enumerate(inked):
             digit, confidence = int(read[place]), float(sure[place])
             possible = list(enumerate(chances[0][place].tolist())) if chances else [(digit, confidence)]
-            found[k] = _Read(
+            found[k] = _ReadNumber(
                 digit,
                 confidence if digit >= 0 else 0.0,
                 tuple(each for each in possible if each[1] >= _POSSIBLE) if digit >= 0 else (),
