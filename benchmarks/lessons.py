@@ -30,12 +30,13 @@ def kilobytes(*contents: bytes) -> float:
 
 
 def weighed(class_: Class, name: str, lang: str) -> list[str]:
-    """Return the kilobytes of a lesson: as one page, its page, its steps, its figures."""
+    """Return the kilobytes of a lesson: as one page, its page, the first part of its steps, all its steps, its figures."""
     browser = class_.browser(ZOE, lang)
     whole, page = browser.get(f"/lessons/{name}?whole"), browser.get(f"/lessons/{name}")
-    steps = browser.get(re.search(r' data-steps="([^"]+)"', page.text)[1])
+    parts = [browser.get(part).content for part in re.search(r' data-steps="([^"]+)"', page.text)[1].split()]
     figures = lesson_of(class_.site, name, lang).figures.values()
-    sizes = *(kilobytes(reply.content) for reply in (whole, page, steps)), kilobytes(*figures)
+    contents = [whole.content], [page.content], parts[:1], parts, figures
+    sizes = [kilobytes(*these) for these in contents]
     return [f"{size:.1f}" for size in sizes]
 
 
@@ -51,7 +52,15 @@ def main() -> None:
         )
         for name in class_.site.course.folder.lessons
     ]
-    print_table(("lesson, English / French", "one page", "each visit", "kept: steps", "kept: figures"), rows)
+    names = (
+        "lesson, English / French",
+        "one page",
+        "each visit",
+        "kept: first steps",
+        "all steps",
+        "kept: figures",
+    )
+    print_table(names, rows)
 
 
 if __name__ == "__main__":

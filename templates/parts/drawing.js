@@ -1,6 +1,6 @@
-// Draws on graph paper, or joint graphs. The boxes of the page stay what is handed in: the drawing fills them, and what is typed
-// there is drawn. The form of the text area is in figures/student_drawing.py. Lengths are mm on paper, y upwards; angles degrees.
-// One function, whose body is not indented.
+// Draws on graph paper, or joint graphs. The boxes of the page are handed in: the drawing fills them, and what is typed is drawn.
+// The text area: figures/student_drawing.py. Lengths are mm on paper, y upwards; angles degrees.
+// One function, not indented.
 document.querySelectorAll(".surface").forEach((place) => {
 "use strict";
 const MOST = 20000, UNDOS = 200, FAR = 2000;
@@ -42,7 +42,7 @@ function foot(one, c) {
   const s = d * Math.cos((heading(it, c) - it.a) * Math.PI / 180);
   return beyond(it, it.a, it.q ? Math.max(0, Math.min(it.length, s)) : s);
 }
-// Two circles are cut by the chord that they have in common.
+// Two circles are cut by their common chord.
 function cut(one, other) {
   let [p, q] = [curve(one), curve(other)].sort((a, b) => (a.r ? 1 : 0) - (b.r ? 1 : 0));
   if (p.r) {
@@ -292,15 +292,16 @@ on(place, "input", (e) => {
 
 // --- keys, fingers, mouse
 on(svg, "keydown", (e) => {
-  const by = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] }[e.key], d = e.shiftKey ? 0.1 : 1;
-  const c = cursor || centre(), stops = [...of("point", "body"), ...crossings()];
+  const by = { Left: [-1, 0], Right: [1, 0], Up: [0, 1], Down: [0, -1] }[e.key.slice(5)], d = e.shiftKey ? 0.1 : 1;
+  const c = cursor || centre(), taken = every("[data-tool]")[e.key - 1], stops = [...of("point", "body"), ...crossings()];
   keys = true;
   if (by) look({ x: tidy(c.x + by[0] * d), y: tidy(c.y + by[1] * d) });
   else if (e.key === "." && stops.length) look(stops[(stops.findIndex((one) => far(one, c) < 1e-3) + 1) % stops.length]);
-  else if (e.key === "Enter" || e.key === " ") { const here = (snaps && close(c, 0.02)) || c; press(here); release[tool](here, true); }
+  else if (taken) { taken.click(); tell(taken.title); }
+  else if (["Enter", " "].includes(e.key)) { const here = (snaps && close(c, 0.02)) || c; press(here); release[tool](here, true); }
   else if (e.key === "Escape") choose(tool);
   else if (e.key === "Delete") remove(find(picked));
-  else if (e.key === "+" || e.key === "-") zoom(e.key === "+" ? 1.6 : 1 / 1.6);
+  else if (/^[+-]$/.test(e.key)) zoom(1.6 ** `${e.key}1`);
   else if (e.ctrlKey && "zy".includes(e.key)) acts[e.key === "z" ? "undo" : "redo"]();
   else return;
   e.preventDefault();

@@ -200,9 +200,10 @@ def test_all_is_done_by_keys(pencil):
     page.focus("[data-name=p]")
     page.keyboard.press("Enter")
     assert page.input_value("[name=a-p]") != ""
-    page.focus("[data-tool=vector]")
-    page.keyboard.press("Enter")
     page.focus("[data-surface]")
+    page.keyboard.press("2")
+    assert page.get_attribute("[data-tool=vector]", "aria-pressed") == "true"
+    assert page.inner_text(".surface-told") == "Vector"
     page.keyboard.press(".")
     page.keyboard.press("Enter")
     for _ in range(12):

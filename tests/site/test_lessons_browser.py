@@ -122,6 +122,9 @@ def test_without_a_script_and_on_a_desk_a_lesson_is_one_page(window, size, scrip
     assert not page.locator(".lesson-bar").is_visible()
     if script:
         assert (too_wide(page), serious(page)) == (0, [])
+        page.wait_for_function(
+            "Array.from(document.querySelectorAll('.lesson img'), (one) => one.naturalWidth).every(Boolean)"
+        )  # though most are far below: they are printed
         assert cut_in_print(page)[1] == []
 
 

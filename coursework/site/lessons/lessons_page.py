@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from hashlib import sha256
+from itertools import pairwise
 from typing import Any, NamedTuple
 
 from markupsafe import Markup
@@ -31,6 +32,7 @@ from coursework.site.lessons.places import keep_place, places
 from coursework.site.practice.contents import exercise_title, titles
 
 _BOX = "blank-"  #: before the names of the boxes of blanks
+_PART = 80_000  #: letters of HTML after which the steps go on in another file: about 12 kB on the line
 _KEPT = f"private, max-age={365 * 24 * 3600}, immutable"
 
 
@@ -50,7 +52,7 @@ class CheckedBlank(NamedTuple):
 
 
 def lesson(request: Request) -> Response:
-    """Return the page of a lesson, whose steps are a file that browsers keep unless all are asked for; a form checks the blanks of
+    """Return the page of a lesson, whose steps are files that browsers keep unless all are asked for; a form checks the blanks of
     one of its examples, or keeps the place of its reader."""
     name = _name(request)
     if request.is_post and "place" in request.form.texts:
@@ -77,7 +79,7 @@ def lesson(request: Request) -> Response:
         name=name,
         lesson_lang=lesson_lang(request.site, name, request.lang),
         address=lesson_address(name),
-        steps_file="" if request.is_post or WHOLE in request.query_params else _steps_file(request, name),
+        steps_files=() if request.is_post or WHOLE in request.query_params else _steps_files(request, name),
         place=places(request).get(name, ""),
         number=1 + order.index(name),
         chapter=next((c for c in titles(request.site, request.lang) if _has(c, name)), None),
@@ -128,14 +130,27 @@ def _after(request: Request, name: str) -> tuple[str, str] | None:
 # --------------------------------------------------------------------- steps
 
 
-def _steps_html(request: Request, name: str, lang: str) -> str:
-    """Return the steps of a lesson for readers of a language. They are the same for everybody: the page has the CSRF token."""
-    written = lesson_lang(request.site, name, lang)
+def _parts(request: Request, name: str, lang: str) -> list[str]:
+    """Return the steps of a lesson for readers of a language, in parts. They are the same for everybody: the page has the CSRF
+    token."""
+    opened = lesson_of(request.site, name, lesson_lang(request.site, name, lang))
+    begins, size = [0], 0
+    for number, step in enumerate(opened.steps):
+        if size > _PART:
+            begins.append(number)
+            size = 0
+        size += len(step.html) + len(step.below)
+    ranges = pairwise([*begins, len(opened.steps)])
+    return [_steps_html(request, name, lang, opened, *these) for these in ranges]
+
+
+def _steps_html(request: Request, name: str, lang: str, opened: SteppedLesson, first: int, end: int) -> str:
     names = {
-        "lesson": lesson_of(request.site, name, written),
+        "lesson": opened,
         "address": lesson_address(name),
         "box": _BOX,
-        "count": None,
+        "first": first,
+        "end": end,
         "typed": {},
         "ticked": {},
         "checked": {},
@@ -145,23 +160,25 @@ def _steps_html(request: Request, name: str, lang: str) -> str:
     return request.site.pages.page("site/student/_lesson_steps", lang, names)
 
 
-def _digest(request: Request, name: str, lang: str) -> str:
-    digest: str = request.site.cache.get(
-        ("steps", name, lang), lambda: sha256(_steps_html(request, name, lang).encode()).hexdigest()[:16]
-    )
-    return digest
+def _digests(request: Request, name: str, lang: str) -> list[str]:
+    def made() -> list[str]:
+        return [sha256(part.encode()).hexdigest()[:16] for part in _parts(request, name, lang)]
+
+    digests: list[str] = request.site.cache.get(("steps", name, lang), made)
+    return digests
 
 
-def _steps_file(request: Request, name: str) -> str:
-    return f"{lesson_address(name)}/steps/{_digest(request, name, request.lang)}"
+def _steps_files(request: Request, name: str) -> list[str]:
+    return [f"{lesson_address(name)}/steps/{digest}" for digest in _digests(request, name, request.lang)]
 
 
 def steps(request: Request) -> Response:
-    """Return the steps of a lesson; the address changes with them."""
+    """Return a part of the steps of a lesson; the address changes with them."""
     name, wanted = _name(request), str(request.path_params["steps"])
     for lang in dict.fromkeys((request.lang, *request.site.languages)):
-        if _digest(request, name, lang) == wanted:
-            return HTMLResponse(_steps_html(request, name, lang), headers={"cache-control": _KEPT})
+        if wanted in (digests := _digests(request, name, lang)):
+            part = _parts(request, name, lang)[digests.index(wanted)]
+            return HTMLResponse(part, headers={"cache-control": _KEPT})
     raise HTTPException("page", 404)
 
 

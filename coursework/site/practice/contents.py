@@ -182,10 +182,14 @@ class NextStep(NamedTuple):
     is_new: bool  #: the exercise was not begun
 
 
-def next_of(request: Request, progress: Progress) -> NextStep | None:
-    """Return the next step for today; None in a course without exercises."""
+def next_of(request: Request, progress: Progress, after: str = "") -> NextStep | None:
+    """Return the next step for today; None in a course without exercises. ``after`` is the exercise that was done: what is new
+    follows it in the order of study."""
     site = request.site
-    order = site.cache.get("study order", lambda: site.course.folder.study_order)
+    order = list(site.cache.get("study order", lambda: site.course.folder.study_order))
+    if after in order:
+        place = 1 + order.index(after)
+        order = order[place:] + order[:place]
     advice: Advice | None = next_step(site.course, progress, request.received_at.date(), order)
     if advice is None:
         return None

@@ -242,7 +242,7 @@ def _after(request: Request, work: Worksheet, summary: dict[str, Any]) -> dict[s
     own = (c for c in chapters if any(entry.name == work.exercise for entry in c.exercises))
     lesson = next((LessonLink(lesson_address(each.name), each.title) for each in work.lessons), None)
     done = DoneExercise(work.variant.text.title, lesson, next(own, None))
-    return {"next": next_of(request, progress), "done": done}
+    return {"next": next_of(request, progress, work.exercise), "done": done}
 
 
 # ------------------------------------------------------------------- drafts

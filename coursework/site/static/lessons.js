@@ -35,9 +35,26 @@
 
   const lesson = document.getElementById("lesson");
   if (!lesson) return;
-  const file = lesson.dataset.steps, name = lesson.dataset.lesson, stopped = place(name, lesson.dataset.place);
+  const files = (lesson.dataset.steps || "").split(" ").filter(Boolean), name = lesson.dataset.lesson, stopped = place(name, lesson.dataset.place);
   const narrow = matchMedia("(max-width: 46rem)"), left = history.state;
   const afterLoad = (act) => document.readyState === "complete" ? act() : addEventListener("load", act);
+
+  // What moves by itself can be stopped; where no motion is wanted it stands still by itself.
+  const isStill = matchMedia("(prefers-reduced-motion: reduce)").matches;
+  function equip(place) {
+    for (const image of isStill ? [] : place.querySelectorAll("img[data-still]")) {
+      const button = document.createElement("button"), moving = image.src;
+      button.type = "button";
+      button.className = "stop";
+      button.textContent = lesson.dataset.stop;
+      button.addEventListener("click", () => {
+        const stops = image.src === moving;
+        image.src = stops ? image.dataset.still : moving;
+        button.textContent = stops ? lesson.dataset.play : lesson.dataset.stop;
+      });
+      image.after(button);
+    }
+  }
 
   function begin() {
     const steps = Array.from(lesson.querySelectorAll(".step"));
@@ -73,29 +90,9 @@
       if (k >= 0) show(k, false);
     });
     if (matchMedia("(min-width: 76rem)").matches) lesson.querySelector(".lesson-contents").open = true;
-    // What moves by itself can be stopped; where no motion is wanted it stands still by itself.
-    const isStill = matchMedia("(prefers-reduced-motion: reduce)").matches;
-    for (const image of isStill ? [] : lesson.querySelectorAll("img[data-still]")) {
-      const button = document.createElement("button"), moving = image.src;
-      button.type = "button";
-      button.className = "stop";
-      button.textContent = lesson.dataset.stop;
-      button.addEventListener("click", () => {
-        const stops = image.src === moving;
-        image.src = stops ? image.dataset.still : moving;
-        button.textContent = stops ? lesson.dataset.play : lesson.dataset.stop;
-      });
-      image.after(button);
-    }
     for (const failure of ["htmx:sendError", "htmx:responseError"]) {
       lesson.addEventListener(failure, (event) => { event.detail.target.textContent = lesson.dataset.notChecked; });
     }
-
-    // A lesson opens without a network with all its figures: they come when the page is there, unless a browser saves data.
-    if (navigator.serviceWorker) afterLoad(() => setTimeout(() => {
-      const files = (navigator.connection || {}).saveData ? [] : Array.from(lesson.querySelectorAll("img[loading]"), (image) => [image.src, image.dataset.still || image.src]).flat();
-      navigator.serviceWorker.ready.then((one) => one.active.postMessage({ files: Array.from(new Set(file ? [file, ...files] : files)) }));
-    }, 1500));
 
     const asked = named(location.hash);
     const first = asked >= 0 ? asked : narrow.matches && stopped ? Math.min(Math.max(stopped.step, 1), steps.length) - 1 : 0;
@@ -108,8 +105,8 @@
     if (narrow.matches) return;
     // On a wide screen the whole lesson stands there: the place is the step that is read.
     if (before) keep(name, before.step, before.of);
-    if (file && asked >= 0) document.getElementById(decodeURIComponent(location.hash.slice(1))).scrollIntoView();
-    if (file && left && left.lessonAt) scrollTo(0, left.lessonAt);  // gone back to, or reloaded
+    if (files.length && asked >= 0) document.getElementById(decodeURIComponent(location.hash.slice(1))).scrollIntoView();
+    if (files.length && left && left.lessonAt) scrollTo(0, left.lessonAt);  // gone back to, or reloaded
     addEventListener("pagehide", () => history.replaceState({ lessonAt: scrollY }, ""));
     const seen = new IntersectionObserver((entries) => {
       const read = entries.filter((entry) => entry.isIntersecting).map((entry) => steps.indexOf(entry.target));
@@ -117,12 +114,45 @@
     }, { rootMargin: "0px 0px -60% 0px" });
     steps.forEach((step) => seen.observe(step));
   }
-  if (!file) { begin(); return; }
-  // The page comes with the first step; all of them are a file that the browser keeps.
+  // A lesson opens without a network, and prints, with all its figures: they come when the page is there, unless a browser saves data.
+  const keepFigures = () => afterLoad(() => setTimeout(() => {
+    const images = (navigator.connection || {}).saveData ? [] : Array.from(lesson.querySelectorAll("img[loading]")), stills = images.map((image) => image.dataset.still || image.src);
+    const kept = Array.from(new Set([...files, ...images.map((image) => image.src), ...stills]));
+    if (navigator.serviceWorker) navigator.serviceWorker.ready.then((one) => one.active.postMessage({ files: kept }));
+    for (const image of images) image.loading = "eager";
+  }, 1500));
+  if (!files.length) { equip(lesson); begin(); keepFigures(); return; }
+  // The page comes with the first step; all of them are files that the browser keeps. On a narrow screen one begins to read when
+  // the first of them is there, if one begins there: of the others stands an empty place until they are.
   lesson.classList.add("opening");
   lesson.classList.toggle("elsewhere", Boolean(location.hash || narrow.matches && stopped && stopped.step > 1));
-  fetch(file).then((reply) => reply.ok ? reply.text() : Promise.reject(reply.status)).then((text) => {
-    lesson.querySelector(".step").outerHTML = text;
-    htmx.process(lesson);
-  }).then(begin, () => { lesson.querySelector("[data-missing]").hidden = false; }).finally(() => lesson.classList.remove("opening"));
+  const missing = () => { lesson.querySelector("[data-missing]").hidden = false; };
+  const parts = files.map((file) => fetch(file).then((reply) => reply.ok ? reply.text() : Promise.reject(reply.status)));
+  parts.forEach((part) => part.catch(() => undefined));  // told once, below
+  function put(html) {
+    const part = document.createElement("template");
+    part.innerHTML = html;
+    for (const step of Array.from(part.content.children)) {
+      const place = document.getElementById(step.id);
+      place.replaceChildren(...step.childNodes);
+      htmx.process(place);
+      equip(place);
+    }
+  }
+  async function open() {
+    const end = lesson.querySelector("[data-missing]");
+    for (let k = 2; k <= Number(lesson.dataset.count); k += 1) {
+      const place = document.createElement("div");
+      place.className = "step"; place.id = "step-" + k; place.tabIndex = -1;
+      end.before(place);
+    }
+    put(await parts[0]);
+    const wanted = location.hash || "#step-" + (stopped ? stopped.step : 1), there = document.getElementById(decodeURIComponent(wanted.slice(1)));
+    const isHere = narrow.matches && there && there.childElementCount > 0;
+    if (isHere) { begin(); lesson.classList.remove("opening"); }
+    (await Promise.all(parts.slice(1))).forEach(put);
+    if (!isHere) begin();
+    keepFigures();
+  }
+  open().catch(missing).finally(() => lesson.classList.remove("opening"));
 })();
