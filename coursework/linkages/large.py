@@ -11,6 +11,7 @@ import numpy as np
 from coursework.degrees import from_radians
 from coursework.errors import CannotAssemble
 from coursework.kinematics.chains import ClosedChain, Vector
+from coursework.messages import as_message
 from coursework.quantities.graph import Graph
 
 _MOST_WAYS = 64  #: sets of lengths of which the positions on the way are remembered
@@ -136,9 +137,17 @@ class LargeGroup:
             if sign * number not in poses:
                 place = self.near_driver + sign * number * self.step
                 before = poses[sign * (number - 1)]
-                poses[sign * number] = self.chain.solve(
-                    self._known({**given, self.driver: place}), before
-                ).values
+                known = self._known({**given, self.driver: place})
+                try:
+                    poses[sign * number] = self.chain.solve(known, before).values
+                except CannotAssemble as fault:
+                    raise CannotAssemble(
+                        "followed from near, {driver} = {start:.6g}, the group cannot pass {driver} = {place:.6g}: {problem}",
+                        driver=self.driver,
+                        start=self.near_driver,
+                        place=place,
+                        problem=as_message(fault),
+                    ) from fault
         return poses[sign * count]
 
     def _known(self, values: Mapping[str, Any]) -> dict[str, Any]:

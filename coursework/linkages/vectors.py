@@ -137,8 +137,11 @@ class PolygonWriter:
         self, body: str, start: str, end: str, primes: str, image: str = "", of: str = "", begin: str = ""
     ) -> list[DrawnSide]:
         """Return the sides from the image of a point of a body to that of another; without ``primes`` they are known, since the motion
-        of the body is. ``image`` and ``of`` are those of the end, unless a point of the body that lies there has its own."""
-        vector, line, of = self._vector(start, end), start + end, of or self._of(start, end)
+        of the body is. ``image`` and ``of`` are those of the end, unless a point of the body that lies there has its own: a vector
+        from another image than the pole is named by the point it begins at as well."""
+        vector, line = self._vector(start, end), start + end
+        # A jack's vectors are named by both its pins, or those about two fixed pivots would have the same name.
+        of = f"{end}/{start}" if body == self.linkage.jack else self._of(start, of or end)
         begin, image = begin or self._image(start), image or end.lower()
         omega, alpha = self.formulas.omega(body), self.formulas.alpha(body)
         if alpha in self.formulas.quantities and is_zero(self.formulas.quantities[alpha].code):
@@ -149,11 +152,11 @@ class PolygonWriter:
             length = "" if primes else rf', r"{line} \left|{rate}\right|"'
             sides, begin = self._in_turn(begin, grown)
             call = f"turning({begin!r}, {image!r}, {of!r}, {line!r}, {vector}, {omega}{length})"
-            name, across = (
-                rf"\vec{{V}}_{{{of}}}" if not grown else rf"\vec{{V}}^t_{{{of}}}",
-                f"1j * ({vector})",
-            )
+            name, across = rf"\vec{{V}}_{{{of}}}", f"1j * ({vector})"
             value = f"1j * {omega} * ({vector})"
+            if grown:
+                name = rf"\vec{{V}}^t_{{{of}}}"
+                call = rf'Side({begin!r}, {image!r}, r"{name}", {value}, r"\perp {line}", way={across})'
             return [*sides, DrawnSide(begin, image, name, not primes, value, across, call)]
         square = rf"{line}\,{rate}^2"
         middle = image if not primes and not gain else image + (primes or "'")

@@ -9,6 +9,8 @@ from coursework.authoring.checks import check_all
 from coursework.authoring.linkage_files import LINKAGES
 from coursework.figures.polygons import Side, polygon_of_velocities
 from coursework.figures.polygons.hand_drawn import judge_drawing
+from coursework.linkages.compiled import compiled
+from coursework.linkages.vectors import PolygonWriter
 from coursework.marking.marking import mark
 
 POLE = np.array([31.0, -12.0])
@@ -134,3 +136,24 @@ def test_equations_of_a_loop_are_right_in_any_form_and_a_missing_bar_is_named():
     assert {n: marks[n].points for n in right} == dict.fromkeys(right, 1.0)
     marks = mark(variant, {"loop_2_x": "r5*cos(theta4) + s_E = 0"})
     assert (marks["loop_2_x"].points, marks["loop_2_x"].verdict) == (0.0, "slip:link_missing")
+
+
+def test_no_two_vectors_of_a_polygon_have_one_name_and_relative_ones_name_both_points():
+    wrong = {}
+    for name in ("tipper", "inverted_slider_crank", "slotted_ram", "crossed_slides", "two_loops"):
+        formulas = compiled(LINKAGES / "exercises" / f"{name}.toml").formulas
+        for kind in ("velocity", "acceleration"):
+            polygon = PolygonWriter(formulas, kind)
+            names = [side.name for side in polygon.sides]
+            if len(names) > len(set(names)):
+                wrong[name, kind] = names
+            # A chain of one body's vectors that begins at another image than the pole is of a motion relative to that point.
+            starts = {side.end: side for side in polygon.sides if "'" in side.end}
+            bare = [
+                side.name
+                for side in polygon.sides
+                if starts.get(side.start, side).start != polygon.pole and "/" not in side.name
+            ]
+            if bare:
+                wrong[name, kind, "relative"] = bare
+    assert wrong == {}
