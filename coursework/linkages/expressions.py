@@ -13,7 +13,7 @@ from fractions import Fraction
 import numpy as np
 
 from coursework.degrees import acos, asin, atan2, cos, sin, sqrt, tan
-from coursework.errors import WrongValue, nearest
+from coursework.errors import WrongValue, cut_short, nearest
 from coursework.messages import Message
 from coursework.parsing.units import Unit, convert, find_unit, parse_unit, product, same_dimension
 
@@ -283,7 +283,9 @@ class ExpressionReader:
 
     def _tree(self, text: object) -> tuple[ast.expr, dict[str, tuple[float, str]]]:
         if not isinstance(text, str) or not text.strip() or len(text) > 500:
-            raise WrongValue(Message("an expression in quotes; found {text}", text=repr(text)))
+            raise WrongValue(
+                Message("an expression in quotes; found {text}", text=cut_short(repr(text), 100))
+            )
         literals: dict[str, tuple[float, str]] = {}
 
         def literal(match: re.Match[str]) -> str:
