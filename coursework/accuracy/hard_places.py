@@ -13,7 +13,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from functools import cached_property
+from functools import cached_property, reduce
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -42,6 +42,7 @@ _MOST = 8  #: places of an exercise
 
 _SAMPLE = 400  #: random places on which margins are compared
 _LOOPS = "loops"
+_LOOP = 64  #: margins of one quantity, beyond which it follows a motion: of each kind the smallest counts
 
 _Key: TypeAlias = tuple[str, str, int]  #: quantity, kind, and which of them
 Margins = dict[_Key, np.ndarray]
@@ -271,10 +272,13 @@ class Terrain:
         """Graph of formulas that record their margins."""
 
         def observe(name: str, value: Any) -> Any:
-            for i, (kind, margin) in enumerate(self._notes):
-                values = np.asarray(margin)
-                if values.dtype.kind in "fc":
-                    self._margins[name, kind, i] = values if values.dtype.kind == "f" else abs(values)
+            noted = [(kind, np.asarray(margin)) for kind, margin in self._notes]
+            noted = [(kind, values) for kind, values in noted if values.dtype.kind in "fc"]
+            if len(noted) > _LOOP:
+                kinds = dict.fromkeys(kind for kind, _ in noted)
+                noted = [(k, reduce(np.fmin, (abs(v) for kind, v in noted if kind == k))) for k in kinds]
+            for i, (kind, values) in enumerate(noted):
+                self._margins[name, kind, i] = values if values.dtype.kind == "f" else abs(values)
             self._notes.clear()
             return value
 
@@ -338,10 +342,13 @@ class Terrain:
                 results[key] = size
         return results
 
-    def relative(self, given: Mapping[str, Any]) -> Margins:
-        """Return the varying margins in parts of their typical size; of those that vanish together the first."""
-        keys = self.distinct
-        margins = self.margins(given, tuple(dict.fromkeys(name for name, _, _ in keys if name != _LOOPS)))
+    def relative(self, given: Mapping[str, Any], only: str = "") -> Margins:
+        """Return the varying margins in parts of their typical size, of one quantity ``only`` if it is named; of those that
+        vanish together the first."""
+        keys = [key for key in self.distinct if only in ("", key[0])]
+        # The determinant of the loops takes the values of all.
+        names = [name for name, _, _ in (self.distinct if only == _LOOPS else keys) if name != _LOOPS]
+        margins = self.margins(given, tuple(dict.fromkeys(names)))
         return {key: margins[key] / self.usual[key] for key in keys if key in margins}
 
     @cached_property
@@ -396,10 +403,11 @@ def _arrays(base: Mapping[str, Any], count: int) -> dict[str, Any]:
 
 
 def _alike(spots: Sequence[_Spot]) -> list[list[_Spot]]:
-    """Group the spots that one call can compute: those with the same choices."""
+    """Group the spots that one call can compute: those of one quantity's margins with the same choices."""
     groups: dict[Any, list[_Spot]] = {}
     for spot in spots:
-        groups.setdefault(tuple(v for v in spot.given.values() if isinstance(v, str)), []).append(spot)
+        choices = tuple(v for v in spot.given.values() if isinstance(v, str))
+        groups.setdefault((spot.key[0], choices), []).append(spot)
     return list(groups.values())
 
 
@@ -418,9 +426,9 @@ def _together(spots: Sequence[_Spot], shape: tuple[int, ...] = ()) -> dict[str, 
 def _own_margins(
     terrain: Terrain, spots: Sequence[_Spot], given: Mapping[str, Any], shape: tuple[int, ...]
 ) -> np.ndarray:
-    """Return the margin of each spot at its own row of places."""
+    """Return the margin of each spot, all of one quantity, at its own row of places."""
     flat = {n: v if isinstance(v, str) else v.ravel() for n, v in given.items()}
-    margins = terrain.relative(flat)
+    margins = terrain.relative(flat, spots[0].key[0])
     none = np.full(shape, np.nan)
     full = {key: m.reshape(len(spots), *shape) for key, m in margins.items()}
     return np.stack([full[s.key][i] if s.key in full else none for i, s in enumerate(spots)])

@@ -7,7 +7,7 @@ from functools import reduce
 
 import numpy as np
 
-from coursework.degrees import acos, angle, cos, polar, sin, sqrt, wrap
+from coursework.degrees import angle, cos, polar, sin, sqrt, wrap
 from coursework.errors import Undefined
 from coursework.figures import Figure, ground_pivot, line, link, pin
 from coursework.solution import Judged, formula, given, judge, mistake, stable
@@ -221,10 +221,12 @@ def _at(share, K1, K2, level, law, theta2_0, range2, theta4_0, range4):
     to_C = K1 - crank
     cosine = (level + K2 * _cosines(theta2_0 + range2 / 2, range2 * (share - 0.5))) / abs(to_C)
     closes = abs(cosine) <= 1
-    corner = acos(np.where(closes, cosine, 1.0)[()])
-    rockers = [angle(to_C) + side * corner for side in (-1, 1)]
-    ahead = (wrap(theta4 - theta4_0 - range4 * rise) for theta4 in rockers)
-    mu = abs(angle((K1 * K2 - K2 * crank) * polar(1.0, -rockers[0]) + K1))
+    cosine = np.where(closes, cosine, 1.0)[()]
+    sine = sqrt((1 - cosine) * (1 + cosine))
+    rockers = [to_C / abs(to_C) * (cosine + side * 1j * sine) for side in (-1, 1)]
+    # Turned back by what is wanted: differences of large angles would cost digits of a small error.
+    ahead = (angle(rocker * polar(1.0, -theta4_0) * polar(1.0, -range4 * rise)) for rocker in rockers)
+    mu = abs(angle((K1 * K2 - K2 * crank) * np.conjugate(rockers[0]) + K1))
     return (
         *(np.where(closes, abs(error), _OPEN)[()] for error in ahead),
         np.where(closes, np.minimum(mu, 180 - mu), 0.0)[()],
