@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from itertools import combinations
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -48,7 +48,7 @@ def exchanged(
     counts = [p for p in boxes.parts if p.sort.is_exact]
     exchanges: dict[str, Exchange] = {}
     for pair in combinations(boxes.parts, 2):
-        if any(part.id in exchanges for part in pair):
+        if any(part.id in exchanges for part in pair) or not any(part.id in wrong for part in pair):
             continue
         if all(part.sort.is_exact for part in pair) and (
             is_guessed or len(counts) > 2 or boxes.goes_on(*pair)
@@ -69,10 +69,16 @@ class _Boxes:
         verdicts: Mapping[str, Verdict],
     ) -> None:
         self._variant, self._readings, self._verdicts = variant, readings, verdicts
-        parts = [p for p in variant.parts if p.id in wrong and _may_be(p, wrong[p.id])]
-        drawn = [p for p in parts if p.judge]
-        self._wrong = len(wrong)
-        self.parts = [p for p in parts if not p.judge or len(drawn) <= _FEW_JUDGED]
+        # What follows from a wrong answer to a judge may do so by chance.
+        followed = {i for i, verdict in verdicts.items() if verdict.said and verdict.said.follows}
+        may_be = [p for p in variant.parts if p.id in readings and _may_be(p, readings[p.id])]
+        drawn = [p for p in may_be if p.judge and p.id in wrong]
+        if len(drawn) > _FEW_JUDGED:
+            drawn = []
+        elif drawn and len(drawn) + len(followed) <= _FEW_JUDGED:
+            drawn += [p for p in may_be if p.id in followed and p.id not in wrong]
+        self._wrong = wrong
+        self.parts = [p for p in may_be if p in drawn or (p.id in wrong and not p.judge)]
         self._before = EarlierAnswers(
             right={
                 p.quantity for p in variant.parts if p.id in readings and p.id not in wrong and not p.judge
@@ -100,7 +106,9 @@ class _Boxes:
         return ways if self._is_right_to_judges(ways) else {}
 
     def _is_right_to_judges(self, ways: Mapping[str, Exchange]) -> bool:
-        """Return whether the judges of exchanged answers take each for right where it belongs."""
+        """Return whether the judges of exchanged answers take each for right where it belongs, and name no mistake of theirs
+        any more: what other answers show still is no exchange."""
+        shown = {v.said.mistake for i in ways if (v := self._verdicts.get(i)) and v.said} - {""}
         placed = {way.part.id: way.reading.values[way.place] for way in ways.values() if way.part.judge}
         for name, ids in judges_of(self._variant):
             if placed.keys().isdisjoint(ids):
@@ -111,6 +119,8 @@ class _Boxes:
             except CourseworkError:
                 return False
             if any(i not in said or said[i].share < 1 for i in placed if i in ids):
+                return False
+            if any(one.mistake in shown for one in said.values()):
                 return False
         return True
 
@@ -123,19 +133,19 @@ class _Boxes:
     def _are_explained(self, *pair: Part) -> bool:
         """Return whether each of two answers is explained in its own box, those of a judge by one mistake.
 
-        A mistake that all answers to a judge show is one of the whole, which an exchange may make.
+        A mistake that another answer to the judge shows too is one of the whole, which an exchange may make.
         """
-        if any(is_scale(part) for part in pair) and self._wrong > len(pair):
+        if any(is_scale(part) for part in pair) and len(self._wrong) > len(pair):
             return True  # many scales are right, for other drawings
-        shown = [self._mistake(part) for part in pair if part.judge]
+        shown = [self._mistake(part, pair) for part in pair if part.judge]
         return all(shown) and len(set(shown)) <= 1 and all(self._is_explained(p) for p in pair if not p.judge)
 
-    def _mistake(self, part: Part) -> str:
-        """Return the mistake that a judge names of an answer, and not of all."""
+    def _mistake(self, part: Part, pair: Sequence[Part]) -> str:
+        """Return the mistake that a judge names of an answer, and of none beyond the pair."""
         said = {i: v.said for i, v in self._verdicts.items() if v.said}
         named = said[part.id].mistake if part.id in said else ""
-        group = dict(judges_of(self._variant))[part.judge]
-        return "" if all(said[i].mistake == named for i in group if i in said) else named
+        others = {*dict(judges_of(self._variant))[part.judge]}.difference(p.id for p in pair)
+        return "" if any(said[i].mistake == named for i in others if i in said) else named
 
     def _is_explained(self, part: Part) -> bool:
         """Return whether the opposite sign or a known mistake gives the answer in its own box as closely."""
