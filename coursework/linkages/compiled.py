@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import itertools
 import linecache
 import os
 import sys
+import weakref
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
 from pathlib import Path
@@ -534,15 +536,26 @@ class CompiledLinkage:
         The module, which is also in ``sys.modules``.
         """
         source = self.exercise if kind == "exercises" else self.solution
-        file = f"{self.linkage.path}:{kind}"
+        file = f"{next(_numbers)}/{self.linkage.path}:{kind}"
         module = ModuleType(name)
         module.__file__ = file
-        linecache.cache[file] = (len(source), None, source.splitlines(keepends=True), file)
+        module._lines = _SourceLines(file, source)  # type: ignore[attr-defined]
         exec(
             compile(source, file, "exec"), module.__dict__
         )  # written from names and expressions that were read
         sys.modules[name] = module
         return module
+
+
+_numbers = itertools.count(1)  #: of modules: files of several courses may have one name
+
+
+class _SourceLines:
+    """Lines of a compiled module, which formulas are printed from, as long as one of its functions lives."""
+
+    def __init__(self, file: str, source: str) -> None:
+        linecache.cache[file] = (len(source), None, source.splitlines(keepends=True), file)
+        weakref.finalize(self, linecache.cache.pop, file, None)
 
 
 @lru_cache(maxsize=256)

@@ -1,5 +1,8 @@
 """Polygons asked by a mechanism's file are judged vector by vector, from any pole and at any scale."""
 
+import inspect
+import shutil
+
 import numpy as np
 import pytest
 from linkage_samples import course
@@ -157,3 +160,19 @@ def test_no_two_vectors_of_a_polygon_have_one_name_and_relative_ones_name_both_p
             if bare:
                 wrong[name, kind, "relative"] = bare
     assert wrong == {}
+
+
+def _foreign_lines(course, name):
+    """Names of the quantities whose lines are those of another function, or of none."""
+    graph = course[name].solution.graph
+    functions = {n: graph.node(n).function for n in graph.quantities if not n.startswith("loop_")}
+    return [n for n, function in functions.items() if f"def {n}(" not in inspect.getsource(function)]
+
+
+def test_files_of_one_name_in_two_courses_print_their_own_formulas(tmp_path):
+    """Formulas are printed from the lines of functions, which a file of the same name elsewhere must not replace."""
+    shutil.copytree(LINKAGES, tmp_path / "other")
+    exercises = tmp_path / "other" / "exercises"
+    shutil.copy(exercises / "slider_crank.toml", exercises / "four_bar.toml")
+    first, other = open_course(LINKAGES), open_course(tmp_path / "other")
+    assert [_foreign_lines(c, "four_bar") for c in (first, other, first)] == [[], [], []]
