@@ -5,6 +5,7 @@ from __future__ import annotations
 import getpass
 import re
 import sys
+from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from datetime import date
 from pathlib import Path
@@ -36,7 +37,8 @@ if TYPE_CHECKING:
 
 _NAMED = 12  #: students named on a line
 _CHANGES = 200  #: changed marks in a table
-_PLACE = re.compile(r"(?P<place>[^=/]*(?:/[^=/:]*)?)=(?P<value>.+)", re.DOTALL)
+_REASONS = 5  #: of rejected rows, the most frequent
+_PLACE = re.compile(r"(?P<place>[^=]*)=(?P<value>.+)", re.DOTALL)
 
 Confirm = Callable[[Sequence["Decision"], bool], None]
 
@@ -59,20 +61,25 @@ def _several(name: str, metavar: str, **more: Any) -> Callable[[Any], Any]:
 )
 @db_option
 @assignment_option
-@_several("--weight", "QUESTION=POINTS", help="Give a question, such as 2.3, other points.")
-@_several("--neutralise", "QUESTION", help="Let a question count for nobody.")
-@_several("--spare", "QUESTION", help="Let a question count only for those whose mark it does not lower.")
-@_several("--bonus", "QUESTION", help="Add a question's points without counting it in the total.")
+@_several(
+    "--weight",
+    "QUESTIONS=POINTS",
+    help="Give a question, such as 2.3, other points; or all of an exercise, such as 2, or of a kind, such as angle.",
+)
+@_several("--neutralise", "QUESTIONS", help="Let questions count for nobody.")
+@_several("--spare", "QUESTIONS", help="Let questions count only for those whose mark they do not lower.")
+@_several("--bonus", "QUESTIONS", help="Add the points of questions without counting them in the total.")
 @_several("--accept", "QUESTION=ANSWER", help="Accept an answer, whoever wrote it.")
 @_several(
     "--refuse",
-    "QUESTION[=ANSWER]",
-    help="Give no points to an answer that waits, whoever wrote it; without ANSWER to all that wait in the question.",
+    "QUESTIONS[=ANSWER]",
+    help="Give no points to an answer that waits, whoever wrote it; without ANSWER to all that wait in the questions.",
 )
-@_several("--tolerance", "QUESTION=FACTOR", help="Widen the accepted margin of a question: 2 doubles it.")
+@_several("--tolerance", "QUESTIONS=FACTOR", help="Widen the accepted margin of questions: 2 doubles it.")
+@click.option("--digits", type=int, help="Make all margins as wide as so many digits kept on the way cost.")
 @_several(
     "--price",
-    "[QUESTION/]VERDICT=SHARE",
+    "[QUESTIONS/]VERDICT=SHARE",
     help="Change the share of the points that a verdict leaves: slip:sign=0.75.",
 )
 @click.option("--full", type=float, metavar="POINTS", help="Points that are worth the best mark.")
@@ -81,7 +88,7 @@ def _several(name: str, metavar: str, **more: Any) -> Callable[[Any], Any]:
 @click.option(
     "--restated",
     is_flag=True,
-    help="Apply the weights and prices that FILE states now, changed after issuing.",
+    help="Apply the weights, prices and digits that FILE states now, changed after issuing.",
 )
 @click.option(
     "--put-away", is_flag=True, help="Put away the waiting answers that say nothing, without points."
@@ -176,7 +183,7 @@ def after(
     if yes or (not as_json and sys.stdin.isatty() and click.confirm(localised(Message("Confirm?")))):
         confirm(steps, feedback)
         told = "{decisions} taken back" if undone else "{decisions} kept; --undo takes the last one back"
-        say(told, decisions=counted(len(steps), "decision"))
+        say(told, decisions=counted(len({one.withdraws or one.id for one in steps}), "decision"))
     elif not as_json:
         say("nothing is written: --yes confirms it")
     return DONE
@@ -243,35 +250,39 @@ def _stored(context: click.Context, course: Course, url: str, name: str) -> tupl
 
 
 def _steps(exam: Exam, asked: Mapping[str, Any]) -> Iterator[Decision]:
-    """Yield the steps that the options ask for."""
+    """Yield the steps that the options ask for; what is asked of several questions at once is one stroke."""
     from coursework.gradebook import adjustments as kinds
-    from coursework.gradebook.after import step
+    from coursework.gradebook.after import steps_on
     from coursework.gradebook.decisions import ACCEPTED, GIVEN
+
+    lang = language_of_messages()
+
+    def on(kind: str, place: str, points: float | None = None, answer: str | None = None) -> list[Decision]:
+        return steps_on(exam, kind, place, points, answer, lang=lang)
 
     for option, kind in (("weight", kinds.WEIGHT), ("tolerance", kinds.TOLERANCE)):
         for text in asked[option]:
             place, value = _split(option, text)
-            yield step(kind, *question_called(exam, place), points=_value(option, value))
+            yield from on(kind, place, _value(option, value))
     for option, kind in (("neutralise", kinds.NEUTRAL), ("spare", kinds.SPARED), ("bonus", kinds.BONUS)):
         for place in asked[option]:
-            yield step(kind, *question_called(exam, place))
+            yield from on(kind, place)
     for option, kind, points in (("accept", ACCEPTED, None), ("refuse", GIVEN, 0.0)):
         for text in asked[option]:
             if kind == GIVEN and "=" not in text:
-                yield from exam.refusals(question_called(exam, text))
+                yield from exam.refusals(exam.called(text, lang))
                 continue
             place, answer = _split(option, text)
-            yield step(kind, *question_called(exam, place), points=points, answer=answer)
+            yield from on(kind, place, points, answer)
     for text in asked["price"]:
         verdict, value = _split("price", text)
         place, _, verdict = verdict.rpartition("/")
-        question = question_called(exam, place) if place else ("", "")
-        yield step(kinds.PRICE, *question, points=_value("price", value), answer=verdict)
-    for option, kind in (("full", kinds.FULL), ("rounding", kinds.STEP)):
+        yield from on(kinds.PRICE, place, _value("price", value), verdict)
+    for option, kind in (("digits", kinds.DIGITS), ("full", kinds.FULL), ("rounding", kinds.STEP)):
         if asked[option] is not None:
-            yield step(kind, points=asked[option])
+            yield from on(kind, "", asked[option])
     if asked["curve"]:
-        yield step(kinds.CURVE, answer=asked["curve"])
+        yield from on(kinds.CURVE, "", answer=asked["curve"])
 
 
 def _undone(exam: Exam, undo: str | None, since: str | None, *, put_away: bool) -> Sequence[Decision]:
@@ -286,7 +297,7 @@ def _undone(exam: Exam, undo: str | None, since: str | None, *, put_away: bool) 
     if since is None and undo != "last":
         return exam.undoable((undo or "").replace(",", " ").split())
     if since is None:
-        standing = standing[-1:]
+        standing = [one for one in standing if one.id == standing[-1].id]
     elif since != "all":
         try:
             standing = steps_since(standing, date.fromisoformat(since))
@@ -315,28 +326,6 @@ def _value(option: str, text: str) -> float:
     if value != value:
         raise BadInput("--{option} takes a number; found {found!r}", option=option, found=text[:40])
     return value
-
-
-def question_called(exam: Exam, name: str) -> tuple[str, str]:
-    """Return the question of a number on the papers, ``2.3``, or of ``exercise/part``.
-
-    Raises
-    ------
-    BadInput
-        There is none.
-    """
-    numbers = {exam.number(*question): question for question in exam.questions}
-    exercise, _, part = name.partition("/")
-    if (exercise, part) in exam.questions:
-        return exercise, part
-    if name.strip() not in numbers:
-        raise BadInput(
-            "no question {name!r}: the papers have {first} to {last}",
-            name=name[:40],
-            first=next(iter(numbers), ""),
-            last=next(reversed(numbers), ""),
-        )
-    return numbers[name.strip()]
 
 
 # ------------------------------------------------------------------------ lines
@@ -372,6 +361,9 @@ def _tell(exam: Exam, restated: Sequence[Decision], notes: Sequence[Message]) ->
         click.echo("  " + texts["silent"].format(len(exam.non_answers)) + " --put-away")
     if exam.rejected:
         click.echo("  " + texts["rejected"].format(len(exam.rejected)))
+        reasons = Counter(localised(row.reason) for row in exam.rejected)
+        for reason, count in reasons.most_common(_REASONS):
+            click.echo("    " + one_line(texts["rejected_why"].format(reason, count)))
     if not exam.cards and not exam.rejected:
         click.echo("  " + texts["nothing_left"])
     if exam.provisional:
@@ -392,10 +384,9 @@ def _tell(exam: Exam, restated: Sequence[Decision], notes: Sequence[Message]) ->
     if restated:
         click.echo(f"  {texts['apply_file']}{colon} --restated")
     click.echo(f"\n{texts['steps']}")
-    for line in step_lines(exam, exam.decisions.standing_steps, lang):
+    lines = step_lines(exam, (*exam.decisions.standing_steps, *exam.put_aside), lang)
+    for line in lines or [texts["no_steps"]]:
         click.echo(f"  {line}")
-    if not exam.decisions.standing_steps:
-        click.echo("  " + texts["no_steps"])
 
 
 def _tell_cards(exam: Exam) -> None:

@@ -13,6 +13,8 @@ from coursework.quantities.error_kinds import PENALTIES
 #: Beyond these a variant is ill-conditioned: rounding alone may cost a student the answer.
 ILL_SHARE, ILL_DEGREES = 0.03, 1.0
 
+DIGITS_KEPT = (2, 12)  #: least and most digits that a student may be said to keep
+
 _SLIPS = ("sign", "conjugate", "unit", "radians", "turns_a_minute", "other_case")
 
 
@@ -58,7 +60,7 @@ class Rules:
                     "{place}: no rule of marking {name!r}{nearest}", place=source, name=name, nearest=near
                 )
             is_integer = isinstance(value, int) and not isinstance(value, bool)
-            if name == "digits" and not (is_integer and 2 <= value <= 12):
+            if name == "digits" and not (is_integer and DIGITS_KEPT[0] <= value <= DIGITS_KEPT[1]):
                 raise BadCourse(
                     "{place}: digits is a whole number from 2 to 12; found {found!r}",
                     place=source,

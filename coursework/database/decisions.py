@@ -196,7 +196,8 @@ def store_new_decisions(connection: Connection, assignment_id: int, files: Decis
     changed = [on for on in dict.fromkeys((*was, *now)) if was.get(on) != now.get(on)]
     for on in changed:
         standing = decisions.on(*on)
-        if on in was and standing and standing[-1].by in names and standing[-1].kind != WITHDRAWN:
+        signed = names | {entry.by for entry in was.get(on, ())}
+        if on in was and standing and standing[-1].by in signed and standing[-1].kind != WITHDRAWN:
             _store_decision(connection, assignment_id, was[on][-1].withdrawn(seed="", withdraws=""))
         for entry in now.get(on, ()):
             _store_decision(connection, assignment_id, entry)

@@ -12,6 +12,7 @@ from functools import cached_property
 from itertools import groupby, pairwise
 from typing import Any, NamedTuple
 
+from coursework.course.marking_rules import DIGITS_KEPT
 from coursework.errors import BadInput, nearest
 from coursework.gradebook.decision import Decision
 from coursework.gradebook.graded_sheet import Graded
@@ -24,24 +25,28 @@ from coursework.marking.mark import Mark
 from coursework.messages import Message
 
 WEIGHT, NEUTRAL, SPARED, BONUS = "weight", "neutral", "neutral_if_hurt", "bonus"
-TOLERANCE, PRICE = "tolerance", "price"
+TOLERANCE, DIGITS, PRICE = "tolerance", "digits", "price"
 FULL, CURVE, STEP = "full", "curve", "step"
 #: Kinds of adjustments, in the order in which they are offered.
-ADJUSTMENTS = (WEIGHT, NEUTRAL, SPARED, BONUS, TOLERANCE, PRICE, FULL, CURVE, STEP)
+ADJUSTMENTS = (WEIGHT, NEUTRAL, SPARED, BONUS, TOLERANCE, DIGITS, PRICE, FULL, CURVE, STEP)
 ON_SCALE = (FULL, CURVE, STEP)
+OF_NO_QUESTION = (DIGITS, *ON_SCALE)
 _STATUS = (NEUTRAL, SPARED, BONUS)
 _SLOTS = {**dict.fromkeys(_STATUS, "status"), FULL: "best", CURVE: "best"}
 #: Families of verdicts whose price may change.
 PRICED = ("slip", "mistake", "follow_through", "missing_unit", "wrong_unit", "partial")
+FOLLOWS_IN_OTHER_CASE = "follow_through:other_case"  #: priced apart from what follows from an error
 MOST_WEIGHT = 1000.0  #: points of a question
 WIDEST = 100.0  #: accepted half-widths
 #: Verdicts that a wider margin leaves as they are.
 _SETTLED = ("correct", "accepted", "missing", "unreadable", "to_mark")
 
-Margins = Callable[[Sequence[Graded]], Iterable[Mapping[str, float]]]
+#: Sheets, and the digits that a student keeps unless they are those of the papers, to the distances of the answers from the
+#: references in accepted half-widths, by part.
+Margins = Callable[[Sequence[Graded], int | None], Iterable[Mapping[str, float]]]
 
 
-def no_margins(sheets: Sequence[Graded]) -> Iterable[Mapping[str, float]]:
+def no_margins(sheets: Sequence[Graded], digits: int | None = None) -> Iterable[Mapping[str, float]]:
     """Return no distances: for sheets on which no margin is changed."""
     return ({} for _ in sheets)
 
@@ -81,6 +86,12 @@ class Adjustments:
     def tolerances(self) -> dict[Question, float]:
         """Accepted half-widths of the questions whose margin is wider."""
         return {question: float(decision.points or 1.0) for question, decision in self._of(TOLERANCE).items()}
+
+    @cached_property
+    def digits(self) -> int | None:
+        """Digits that a student may keep, where margins are as wide as that costs; None where they are as issued."""
+        last = self._last.get((DIGITS, "", "", ""))
+        return None if last is None or last.points is None else int(last.points)
 
     @cached_property
     def prices(self) -> dict[tuple[str, str, str], float]:
@@ -157,16 +168,19 @@ class Adjustments:
     ) -> list[Graded]:
         """Return marked sheets with the adjustments applied, in their order.
 
-        ``sheets`` are all of each student of whom there are some; ``margins`` returns the distances of the answers of sheets
-        from the references, in accepted half-widths.
+        ``sheets`` are all of each student of whom there are some.
         """
         adjusted = [self._priced(graded) for graded in sheets]
-        if self.tolerances:
-            wider = {exercise for exercise, _ in self.tolerances}
-            places = [index for index, graded in enumerate(adjusted) if graded.exercise in wider]
-            distances = margins([adjusted[index] for index in places])
-            for index, by_part in zip(places, distances, strict=True):
-                adjusted[index] = self._widened(adjusted[index], by_part)
+        wider = {exercise for exercise, _ in self.tolerances}
+        places = [
+            k for k, graded in enumerate(adjusted) if self.digits is not None or graded.exercise in wider
+        ]
+        if places:
+            among = [adjusted[k] for k in places]
+            as_issued = list(margins(among, None))
+            anew = as_issued if self.digits is None else margins(among, self.digits)
+            for k, *by_part in zip(places, as_issued, anew, strict=True):
+                adjusted[k] = self._widened(adjusted[k], *by_part)
         adjusted = [self._weighted(graded) for graded in adjusted]
         if SPARED in self.statuses.values():
             self._spare(adjusted, self.on(issued))
@@ -181,19 +195,22 @@ class Adjustments:
     def _price(self, graded: Graded, part: str, line: Mark) -> Mark:
         if part in graded.settled:
             return line
-        family = line.verdict.partition(":")[0]
+        names = [line.verdict, line.verdict.partition(":")[0]]
+        if line.verdict == "follow_through" and "slip:other_case" in line.matches:
+            names.insert(0, FOLLOWS_IN_OTHER_CASE)
         for place in ((graded.exercise, part), (graded.exercise, ""), ("", "")):
-            for verdict in (line.verdict, family):
+            for verdict in names:
                 if (share := self.prices.get((*place, verdict))) is not None:
                     return line._replace(points=round(share * line.out_of, 9))
         return line
 
-    def _widened(self, graded: Graded, distances: Mapping[str, float]) -> Graded:
+    def _widened(self, graded: Graded, as_issued: Mapping[str, float], anew: Mapping[str, float]) -> Graded:
         lines = dict(graded.lines)
-        for part, distance in distances.items():
+        for part, distance in as_issued.items():
             line, widest = lines[part], self.tolerances.get((graded.exercise, part), 1.0)
             is_open = part not in graded.settled and line.verdict not in _SETTLED
-            if is_open and 1.0 < distance <= widest and line.points < line.out_of:
+            is_within = min(distance, anew.get(part, distance)) <= widest
+            if is_open and is_within and distance > 1.0 and line.points < line.out_of:
                 message = words(line.lang)["marking"]["widened"]
                 lines[part] = line._replace(
                     verdict="accepted", points=line.out_of, says=message, feedback=message
@@ -305,9 +322,10 @@ def check_adjustment(decision: Decision, worth: Mapping[str, Mapping[str, float]
         elif not 0 < (decision.points or 0.0) <= 1e6:
             raise _bad_value(decision)
         return
-    if decision.exercise not in worth if decision.exercise else decision.kind != PRICE:
+    is_anywhere = decision.kind in (DIGITS, PRICE)
+    if decision.exercise not in worth if decision.exercise else not is_anywhere:
         raise BadInput("no exercise {exercise!r} was issued", exercise=decision.exercise)
-    if decision.part not in worth[decision.exercise] if decision.part else decision.kind != PRICE:
+    if decision.part not in worth[decision.exercise] if decision.part else not is_anywhere:
         raise BadInput(
             "{exercise} has no part {part!r}{nearest}",
             exercise=decision.exercise,
@@ -320,9 +338,11 @@ def check_adjustment(decision: Decision, worth: Mapping[str, Mapping[str, float]
             verdicts=", ".join(PRICED),
             found=(decision.answer or "")[:40],
         )
-    limits = {WEIGHT: (1e-6, MOST_WEIGHT), TOLERANCE: (1.0, WIDEST), PRICE: (0.0, 1.0)}
+    limits = {WEIGHT: (1e-6, MOST_WEIGHT), TOLERANCE: (1.0, WIDEST), DIGITS: DIGITS_KEPT, PRICE: (0.0, 1.0)}
     low, high = limits.get(decision.kind, (0.0, 0.0))
     if decision.kind in limits and not (decision.points is not None and low <= decision.points <= high):
+        raise _bad_value(decision)
+    if decision.kind == DIGITS and (decision.exercise or decision.points != int(decision.points or 0)):
         raise _bad_value(decision)
 
 
@@ -330,6 +350,7 @@ def _bad_value(decision: Decision) -> BadInput:
     wanted = {
         WEIGHT: Message("points above 0"),
         TOLERANCE: Message("a number of accepted margins from 1 to 100: a margin only becomes wider"),
+        DIGITS: Message("a whole number of digits from 2 to 12, for all questions"),
         PRICE: Message("a share from 0 to 1"),
         FULL: Message("the points that are worth the best mark"),
         STEP: Message("a step above 0"),

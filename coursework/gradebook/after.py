@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import re
 from collections import Counter
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from datetime import UTC, date, datetime
 from functools import cached_property
@@ -15,7 +15,18 @@ from typing import Any, NamedTuple
 
 from coursework.course.course import Course
 from coursework.course.marking_rules import Rules
-from coursework.gradebook.adjustments import NEUTRAL, PRICE, SPARED, STEP, WEIGHT, Adjustments, Question
+from coursework.errors import BadInput
+from coursework.gradebook.adjustments import (
+    DIGITS,
+    FOLLOWS_IN_OTHER_CASE,
+    NEUTRAL,
+    PRICE,
+    SPARED,
+    STEP,
+    WEIGHT,
+    Adjustments,
+    Question,
+)
 from coursework.gradebook.book import Gradebook, Result, Sitting, results
 from coursework.gradebook.class_marking import rules_of
 from coursework.gradebook.decision import new_id
@@ -251,6 +262,42 @@ class Exam:
         return next((self.number(*one).partition(".")[0] for one in self.questions if one[0] == exercise), "")
 
     @cached_property
+    def kinds(self) -> dict[str, list[Question]]:
+        """Questions of each kind of part."""
+        kinds: dict[str, list[Question]] = {}
+        for exercise, part in self.questions:
+            if (asked := self.course[exercise].spec.part(part)) is not None:
+                kinds.setdefault(asked.kind, []).append((exercise, part))
+        return kinds
+
+    def called(self, name: str, lang: str = "en") -> list[Question]:
+        """Return the questions of a name: a number on the papers, such as ``2.3``, or ``exercise/part``; an exercise, by its
+        number or its name; or a kind of part, such as ``angle``, as itself or in words.
+
+        Raises
+        ------
+        BadInput
+            There are none.
+        """
+        asked, kind_names = name.strip(), words(lang)["after"]["sorts"]
+        for question in self.questions:
+            if asked in ("/".join(question), self.number(*question)):
+                return [question]
+        found = [one for one in self.questions if asked in (one[0], self.exercise_number(one[0]))]
+        for kind, questions in self.kinds.items():
+            if folded(asked) in (folded(kind), folded(kind_names.get(kind, kind))):
+                found = questions
+        if not found:
+            raise BadInput(
+                "no question {name!r}: the papers have {first} to {last}, and the kinds {kinds}",
+                name=name[:40],
+                first=self.number(*self.questions[0]) if self.questions else "",
+                last=self.number(*self.questions[-1]) if self.questions else "",
+                kinds=", ".join(self.kinds) or "–",
+            )
+        return found
+
+    @cached_property
     def open(self) -> list[tuple[AnswerGroup, tuple[AnswerToReview, ...]]]:
         """Groups of answers to review, each with those of its answers on which nobody has decided."""
         drawn = drawn_questions(self.course, self.issued)
@@ -301,32 +348,22 @@ class Exam:
 
     def put_away(self, by: str, reason: str) -> list[Decision]:
         """Return the decisions that give no points to all non-answers, as one stroke."""
-        stroke = new_id()
-        return [
-            Decision(
-                one.student,
-                one.sheet.exercise,
-                str(one.sheet.seed),
-                one.mark.part,
-                GIVEN,
-                0.0,
-                reason,
-                one.mark.answer,
-                by,
-                id=stroke,
+        return as_one(
+            step(GIVEN, one.sheet.exercise, one.mark.part, 0.0, one.mark.answer, reason, by)._replace(
+                student=one.student, seed=str(one.sheet.seed)
             )
             for one in self.non_answers
-        ]
+        )
 
-    def refusals(self, question: Question) -> list[Decision]:
-        """Return the steps that give no points to every answer that waits in a question."""
+    def refusals(self, questions: Collection[Question]) -> list[Decision]:
+        """Return the steps that give no points to every answer that waits in some questions, as one stroke."""
         answers = dict.fromkeys(
-            one.mark.answer
+            (group.exercise, group.part, one.mark.answer)
             for group, members in self.open
             for one in members
-            if (group.exercise, group.part) == question and one.mark.verdict in WAITING
+            if (group.exercise, group.part) in questions and one.mark.verdict in WAITING
         )
-        return [step(GIVEN, *question, points=0.0, answer=answer) for answer in answers]
+        return as_one(step(GIVEN, exercise, part, 0.0, answer) for exercise, part, answer in answers)
 
     @cached_property
     def put_aside(self) -> list[Decision]:
@@ -469,6 +506,39 @@ def step(
     return Decision("", exercise, "", part, kind, points, reason, answer, by, now, id=new_id())
 
 
+def steps_on(
+    exam: Exam,
+    kind: str,
+    place: str = "",
+    points: float | None = None,
+    answer: str | None = None,
+    reason: str = "",
+    by: str = "",
+    *,
+    lang: str = "en",
+) -> list[Decision]:
+    """Return a change of what a place names (:meth:`Exam.called`), one stroke whatever the number of its questions; without a
+    place of everything.
+
+    Raises
+    ------
+    BadInput
+        The place names no question, or several where a single answer is meant.
+    """
+    questions = exam.called(place, lang) if place else [("", "")]
+    if kind in (ACCEPTED, GIVEN) and len(questions) > 1:
+        raise BadInput(
+            "an answer is of one question; {name} names {count}", name=place[:40], count=len(questions)
+        )
+    return as_one(step(kind, *question, points, answer, reason, by) for question in questions)
+
+
+def as_one(steps: Iterable[Decision]) -> list[Decision]:
+    """Return steps as one stroke: one decision, which is told and taken back as a whole."""
+    stroke = new_id()
+    return [one._replace(id=stroke) for one in steps]
+
+
 def undoing(steps: Sequence[Decision], by: str, reason: str = "") -> list[Decision]:
     """Return what takes decisions back, the last first."""
     more = {"by": by, "made": datetime.now(UTC), "line": 0, "location": "", "reason": reason}
@@ -484,7 +554,7 @@ def steps_since(steps: Sequence[Decision], day: date) -> Sequence[Decision]:
 class Restated(NamedTuple):
     """Difference between an assignment's file and what was issued."""
 
-    steps: tuple[Decision, ...]  #: new weights and prices, and the new step of the mark
+    steps: tuple[Decision, ...]  #: one stroke: new weights, margins and prices, and the new step of the mark
     notes: tuple[Message, ...]  #: differences that no step applies
 
 
@@ -525,31 +595,32 @@ def restated(assignment: Assignment, exam: Exam) -> Restated:
     rules = Rules.of(assignment.marking, name, exam.course.folder.rules)
     issued_rules = rules_of(exam.course, exam.issued) or exam.course.folder.rules
     steps += _restated_prices(exam, issued_rules, rules)
-    notes += [
-        Message(
-            "{file} states {rule} = {now:g} in [marking], and the papers {before:g}, which stays: widen a margin or accept answers here",
-            file=name,
-            rule=rule,
-            now=getattr(rules, rule),
-            before=getattr(issued_rules, rule),
+    if rules.digits < issued_rules.digits and adjustments.digits != rules.digits:
+        steps.append(step(DIGITS, points=rules.digits))
+    elif rules.digits > issued_rules.digits:
+        notes.append(
+            Message(
+                "{file} states digits = {now:g} in [marking], and the papers {before:g}, which stays: margins would become narrower, and what was right stays right",
+                file=name,
+                now=rules.digits,
+                before=issued_rules.digits,
+            )
         )
-        for rule in ("digits", "other_case")
-        if getattr(rules, rule) != getattr(issued_rules, rule)
-    ]
-    return Restated(tuple(steps), tuple(notes))
+    return Restated(tuple(as_one(steps)), tuple(notes))
 
 
 def _restated_prices(exam: Exam, before: Rules, now: Rules) -> Iterator[Decision]:
     """Yield the prices that rules of marking state now and did not before, unless a step has applied them."""
-    stroke = new_id()
     kinds = [kind for kind in PENALTIES if now.share(kind) != before.share(kind)]
     shares = {("", f"slip:{kind}"): now.share(kind) for kind in kinds if kind != "mistake"}
     if now.follow_through != before.follow_through:
         shares["", "follow_through"] = now.follow_through
+    if (now.follow_through, now.other_case) != (before.follow_through, before.other_case):
+        shares["", FOLLOWS_IN_OTHER_CASE] = min(now.follow_through, now.other_case)
     for name in exam.issued.exercises if kinds else ():
         for mistake in exam.course[name].solution.mistakes.values():
             if mistake.share is None and mistake.kind in kinds:
                 shares[name, f"mistake:{mistake.name}"] = now.share(mistake.kind)
     for (exercise, verdict), share in shares.items():
         if exam.decisions.adjustments.prices.get((exercise, "", verdict)) != share:
-            yield step(PRICE, exercise, points=share, answer=verdict)._replace(id=stroke)
+            yield step(PRICE, exercise, points=share, answer=verdict)

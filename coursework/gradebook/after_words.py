@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from typing import NamedTuple
+from collections.abc import Iterable, Sequence
+from typing import Any, NamedTuple
 
 from coursework.gradebook.adjustments import PRICE
 from coursework.gradebook.after import Distribution, Exam, ExamQuestion
@@ -13,6 +13,7 @@ from coursework.language.numbers import localise
 from coursework.language.words import words
 
 _LONGEST = 70  #: characters of an error in words
+_TOLD, _NUMBERS = 6, 12  #: changes of one stroke, and numbers of questions of one change, that are told
 
 
 def number(value: float, lang: str, digits: int = 4) -> str:
@@ -20,26 +21,37 @@ def number(value: float, lang: str, digits: int = 4) -> str:
     return localise(f"{value:.{digits}g}", lang)
 
 
-def step_text(exam: Exam, step: Decision, lang: str) -> str:
-    """Return what a step does."""
-    texts = words(lang)["after"]
-    if step.kind == WITHDRAWN:
-        return str(texts["undone"]).format(_place(exam, step, lang))
-    points = (step.points or 0.0) * (100 if step.kind == PRICE else 1)
-    answer = error_text(exam, step.exercise, step.answer or "", lang) if step.kind == PRICE else step.answer
-    return str(texts["kinds"][step.kind]).format(
-        question=_place(exam, step, lang), points=number(points, lang, 6), answer=answer or ""
-    )
-
-
 def stroke_texts(exam: Exam, steps: Iterable[Decision], lang: str) -> list[tuple[Decision, str]]:
-    """Return the first of the steps that were made at one stroke, and what they do, stroke by stroke in their order."""
+    """Return the first of the decisions that were made at one stroke, and what they do, stroke by stroke in their order."""
     strokes: dict[str, list[Decision]] = {}
     for one in steps:
         strokes.setdefault(one.id, []).append(one)
-    several = str(words(lang)["after"]["several"])
-    texts = ((made[0], step_text(exam, made[0], lang), len(made)) for made in strokes.values())
-    return [(first, text if count == 1 else several.format(text, count)) for first, text, count in texts]
+    return [(made[0], stroke_text(exam, made, lang)) for made in strokes.values()]
+
+
+def stroke_text(exam: Exam, made: Sequence[Decision], lang: str) -> str:
+    """Return what the decisions of one stroke do: those that do the same to several questions are told together."""
+    texts = words(lang)["after"]
+    if all(one.student for one in made):
+        return str(texts["aside"]).format(len(made))
+    alike: dict[tuple[Any, ...], list[Decision]] = {}
+    for one in made:
+        alike.setdefault((one.kind, one.points, one.answer), []).append(one)
+    told = [_alike_text(exam, some, lang) for some in alike.values()]
+    text = str(texts["then"]).join(told[:_TOLD])
+    return text if len(told) <= _TOLD else str(texts["several"]).format(text, len(told))
+
+
+def _alike_text(exam: Exam, steps: Sequence[Decision], lang: str) -> str:
+    texts, step = words(lang)["after"], steps[0]
+    place = _place(exam, steps, lang)
+    if step.kind == WITHDRAWN:
+        return str(texts["undone"]).format(place)
+    points = (step.points or 0.0) * (100 if step.kind == PRICE else 1)
+    answer = error_text(exam, step.exercise, step.answer or "", lang) if step.kind == PRICE else step.answer
+    return str(texts["kinds"][step.kind]).format(
+        question=place, points=number(points, lang, 6), answer=answer or ""
+    )
 
 
 class _PricedError(NamedTuple):
@@ -55,16 +67,21 @@ def error_text(exam: Exam, exercise: str, verdict: str, lang: str) -> str:
     if not name:
         return told
     asked = [exercise] if exercise else exam.issued.exercises
-    says = (
-        Names(exam.course, None, lang).mistake(_PricedError(one, family, name), _LONGEST) for one in asked
-    )
+    kind = "slip" if family == "follow_through" else family
+    says = (Names(exam.course, None, lang).mistake(_PricedError(one, kind, name), _LONGEST) for one in asked)
     return f"{told}{words(lang)['sheet']['colon']} {next((text for text in says if text != name), name)}"
 
 
-def _place(exam: Exam, step: Decision, lang: str) -> str:
-    if (step.exercise, step.part) in exam.questions:
-        return exam.number(step.exercise, step.part)
-    texts, number = words(lang)["after"]["kinds"], exam.exercise_number(step.exercise)
+def _place(exam: Exam, steps: Sequence[Decision], lang: str) -> str:
+    texts, step = words(lang)["after"]["places"], steps[0]
+    numbers = [
+        exam.number(one.exercise, one.part) for one in steps if (one.exercise, one.part) in exam.questions
+    ]
+    if numbers:
+        more = [] if len(numbers) <= _NUMBERS else [f"… ({len(numbers)})"]
+        name = "question" if len(numbers) == 1 else "questions"
+        return str(texts[name]).format(", ".join([*numbers[:_NUMBERS], *more]))
+    number = exam.exercise_number(step.exercise)
     return str(texts["exercise"]).format(number) if number else str(step.exercise or texts["everywhere"])
 
 

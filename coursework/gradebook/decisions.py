@@ -46,6 +46,7 @@ DECISION_COLUMNS = (
 )  # fmt: skip
 STEP_COLUMNS = ("by", "date", "id", "withdraws")  #: more columns where a line is a step, or has an id
 TO_MARK_FILE, ACCEPTED_FILE, EDITED_FILE = "to_mark.csv", "accepted.csv", "by_hand.csv"  #: of before
+_FILES = (DECISIONS_FILE, TO_MARK_FILE, ACCEPTED_FILE, EDITED_FILE)
 _NEEDED = ("student", "exercise", "part")
 _OPTIONAL = ("seed", "points", "reason", "kind")
 _LONGEST_ID, _PREFIX = 40, 3
@@ -280,7 +281,7 @@ class DecisionFiles:
         )
         self._rows.append(
             {**row, "out_of": f"{mark.out_of:g}"}
-            | (_id_cells(given) if given and given.id in self._ids else {})
+            | (_signature(given) if given and given.id in self._ids else {})
         )
 
     @property
@@ -378,16 +379,18 @@ def edited_row(change: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def row_of(one: Decision) -> dict[str, Any]:
-    """Return the line of ``decisions.csv`` of a decision; of a step with who made it, and the day."""
+    """Return the line of ``decisions.csv`` of a decision, with who made it, and the day."""
     row = _row(*one.answer_id, one.answer or "", one.kind, one.points, one.reason)
-    row |= _id_cells(one)
-    if not one.student:
-        row |= {"by": one.by, "date": one.made and one.made.astimezone().date().isoformat()}
-    return row
+    return row | _signature(one)
 
 
-def _id_cells(one: Decision) -> dict[str, str]:
-    return {"id": one.id, "withdraws": one.withdraws} if one.id else {}
+def _signature(one: Decision) -> dict[str, str]:
+    """Return the last cells of the line of a decision with an id; a person signs, and no file."""
+    if not one.id:
+        return {}
+    by = "" if one.student and one.by in _FILES else one.by
+    day = one.made.astimezone().date().isoformat() if one.made else ""
+    return {"by": by, "date": day, "id": one.id, "withdraws": one.withdraws}
 
 
 def _row(
@@ -444,9 +447,16 @@ def _decision(
     seed = re.sub(r"[.,]0+$", "", row.get("seed", ""))  # as spreadsheets write whole numbers
     answer = row.get("answer", "") if listed else row.get("answer") or None if "kind" in row else None
     named = row["student"], row["exercise"], seed, row["part"]
+    signed = row.get("by") or by, _made(row)
     return Decision(
-        *named, kind, points, row.get("reason", ""), answer, by, None, number, location, *_ids(row)
+        *named, kind, points, row.get("reason", ""), answer, *signed, number, location, *_ids(row)
     )
+
+
+def _made(row: Mapping[str, str]) -> datetime | None:
+    with suppress(ValueError):
+        return datetime.fromisoformat(row.get("date", ""))
+    return None
 
 
 def _step(
@@ -457,14 +467,11 @@ def _step(
         raise BadInput(
             "{place}: {kind} is for everybody: leave the column student empty", place=location, kind=kind
         )
-    made = None
-    with suppress(ValueError):
-        made = datetime.fromisoformat(row.get("date", ""))
     seed = re.sub(r"[.,]0+$", "", row.get("seed", ""))
     named = "", row.get("exercise", ""), seed, row.get("part", "")
     answer, by = row.get("answer") or None, row.get("by") or by
     return Decision(
-        *named, kind, points, row.get("reason", ""), answer, by, made, number, location, *_ids(row)
+        *named, kind, points, row.get("reason", ""), answer, by, _made(row), number, location, *_ids(row)
     )
 
 

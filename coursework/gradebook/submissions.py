@@ -10,6 +10,7 @@ import os
 import re
 import sys
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from functools import cache, reduce
 from itertools import islice
 from operator import itemgetter
 from pathlib import Path
@@ -32,8 +33,10 @@ from coursework.gradebook.rows import (
     short_fault,
 )
 from coursework.gradebook.submission_folders import SIDE_FILES, SubmittedFile, latest, submitted_file
+from coursework.issuing.identity import plain
 from coursework.issuing.issued import COLUMNS
-from coursework.messages import Message
+from coursework.language.words import languages
+from coursework.messages import Message, localised
 from coursework.system.extras import NotAtHand, library
 from coursework.system.limits import MOST_BYTES as MAX_BYTES
 from coursework.system.limits import (
@@ -217,7 +220,7 @@ def _read_csv(data: bytes, source: str) -> Iterator[AnswerRow | Rejected | Platf
                 if any(map(str.strip, cells)):
                     yield _row_of(named(cells), f"{source}, line {number}", warning)
             continue
-        header = [c.strip().casefold() for c in cells]
+        header = _columns_called(cells)
         missing = [c for c in COLUMNS if c not in header]
         if missing and (table := reader_of(cells)):
             yield from read_table(table, "\n".join(lines), delimiter, source, warning)
@@ -226,8 +229,8 @@ def _read_csv(data: bytes, source: str) -> Iterator[AnswerRow | Rejected | Platf
             titles = ", ".join(c for c in header if c) or "nothing"
             wanted = Message(
                 "the header must name {columns}; {missing} missing, found {found}",
-                columns=", ".join(COLUMNS),
-                missing=", ".join(missing),
+                columns=_listed(_TITLES.values()),
+                missing=_listed(_TITLES[c] for c in missing),
                 found=titles,
             )
             yield Rejected(location, fault_of(cells) or wanted)
@@ -238,6 +241,35 @@ def _read_csv(data: bytes, source: str) -> Iterator[AnswerRow | Rejected | Platf
         named = itemgetter(*(header.index(c) for c in COLUMNS))
     if not has_rows:
         yield Rejected(source, NO_ANSWERS)
+
+
+#: Titles of the columns of answers, which a file may have in any language.
+_TITLES = dict(
+    zip(
+        COLUMNS,
+        (Message("student"), Message("exercise"), Message("seed"), Message("part"), Message("answer")),
+        strict=True,
+    )
+)
+
+
+def _listed(titles: Iterable[Message]) -> Message:
+    return reduce(lambda first, second: Message("{first}, {second}", first=first, second=second), titles)
+
+
+@cache
+def _columns_by_title() -> dict[str, str]:
+    """Return the columns of answers by their titles in all languages."""
+    return {
+        plain(localised(title, lang)): column for column, title in _TITLES.items() for lang in languages()
+    }
+
+
+def _columns_called(cells: Sequence[str]) -> list[str]:
+    """Return the names of columns by their titles; those of answers alone may be in another language."""
+    header = [c.strip().casefold() for c in cells]
+    known = [_columns_by_title().get(plain(title), title) for title in header]
+    return known if set(COLUMNS) <= set(known) else header
 
 
 def _row_of(cells: Sequence[str], location: str, warning: str) -> AnswerRow:

@@ -8,7 +8,7 @@ and is shown on request.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from hashlib import sha256
 from typing import NamedTuple
 
@@ -92,8 +92,10 @@ def measures(course: Course, issued: Issued, graded: Sequence[Graded]) -> Iterat
 def margins_of(course: Course, issued: Issued) -> Margins:
     """Return the function that measures the answers of sheets for a wider margin."""
 
-    def margins(sheets: Sequence[Graded]) -> Iterator[Mapping[str, float]]:
+    def margins(sheets: Sequence[Graded], digits: int | None) -> Iterator[Mapping[str, float]]:
         rules = rules_of(course, issued)
+        if digits is not None:
+            rules = replace(rules or course.folder.rules, digits=digits)
         variants = [course[graded.exercise].from_record(graded.record) for graded in sheets]
         for name in dict.fromkeys(graded.exercise for graded in sheets):
             keys_of(course[name], [v for v in variants if v.exercise.name == name], rules)

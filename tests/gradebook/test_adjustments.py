@@ -40,8 +40,8 @@ def sheets():
         yield Graded(student, "x", 1, lines, tuple("abc"), RECORD)
 
 
-def margins(of):
-    return ({"b": 1.7} if graded.student == "Bo" else {} for graded in of)
+def margins(of, digits):
+    return ({"b": 1.7 if digits is None else 0.4 * digits} if graded.student == "Bo" else {} for graded in of)
 
 
 def marks(*steps):
@@ -70,6 +70,10 @@ STEPS = {
     (("given", "a", 1, "7"),): [(8.5, 10, "17"), (2, 10, "4"), (4, 10, "8")],
     (("tolerance", "b", 2, ""),): [(8.5, 10, "17"), (5, 10, "10"), (3, 10, "6")],
     (("tolerance", "b", 1.5, ""),): [(8.5, 10, "17"), (2, 10, "4"), (3, 10, "6")],
+    (("digits", "", 2, ""),): [(8.5, 10, "17"), (5, 10, "10"), (3, 10, "6")],
+    (("digits", "", 3, ""),): [(8.5, 10, "17"), (2, 10, "4"), (3, 10, "6")],
+    (("digits", "", 3, ""), ("tolerance", "b", 1.3, "")): [(8.5, 10, "17"), (5, 10, "10"), (3, 10, "6")],
+    (("digits", "", 5, ""), ("tolerance", "b", 1.8, "")): [(8.5, 10, "17"), (5, 10, "10"), (3, 10, "6")],
     (("price", "b", 1, "slip"),): [(10, 10, "20"), (2, 10, "4"), (3, 10, "6")],
     (("price", "", 0.5, "mistake:term"),): [(8.5, 10, "17"), (2, 10, "4"), (5.5, 10, "11")],
     (("full", "", 8, ""),): [(8.5, 10, "20"), (2, 10, "5"), (3, 10, "7.5")],
@@ -111,6 +115,9 @@ def test_a_decision_is_called_by_its_id_or_by_letters_that_begin_one_alone():
         ("curve", "", None, "5:10 4:20"),
         ("curve", "", None, "x"),
         ("neutral", "", None, ""),
+        ("digits", "", 1, ""),
+        ("digits", "", 2.5, ""),
+        ("digits", "b", 3, ""),
     ],
 )
 def test_a_step_that_makes_no_sense_is_refused(kind, part, value, answer):

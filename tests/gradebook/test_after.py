@@ -8,6 +8,8 @@ from small_assignment import grade, issue, item, right, table
 
 import coursework
 from coursework.cli import run
+from coursework.course.answer_key import Key
+from coursework.course.variant import Variant
 from coursework.gradebook.after import is_non_answer
 
 NAMES = [f"S{k:02}" for k in range(12)]
@@ -65,8 +67,9 @@ def test_what_is_left_is_told_with_the_proposal_that_fits(marked, capsys, monkey
     assert after() == 1
     text = capsys.readouterr().out
     assert "Illisibles" in text
+    assert "no student 'Nobody' on the roster (lignes" in text  # as grade wrote it, then in English
     assert "les meilleurs la manquent" in text
-    assert "notée sur 3" in text
+    assert "sur 3\n" in text
 
 
 def test_a_change_is_previewed_confirmed_applied_by_grade_and_undone(marked, capsys):
@@ -182,11 +185,11 @@ def test_prices_changed_in_the_file_count_when_confirmed_as_if_the_papers_had_st
     plain, before = folder.parent / "issued.json", (folder / "marks.csv").read_text("utf-8")
     content = json.loads(plain.read_text("utf-8"))
     file = folder.parent / "week3.toml"
-    rules = "[marking]\ndigits = 3\nfollow_through = 0.4\n[marking.prices]\nsign = 0.75\nmistake = 0.25\n"
+    rules = "[marking]\ndigits = 5\nfollow_through = 0.4\n[marking.prices]\nsign = 0.75\nmistake = 0.25\n"
     file.write_text(file.read_text("utf-8").replace("points = { x = 3 }", "") + rules, "utf-8")
     capsys.readouterr()
     assert after() == 1
-    assert "digits = 3 in [marking], and the papers 4" in capsys.readouterr().out
+    assert "digits = 5 in [marking], and the papers 4" in capsys.readouterr().out
     assert after("--restated", "--yes") == 0
     (stroke,) = {row["id"] for row in table(folder / "decisions.csv")}
     prices = {row["answer"]: row["points"] for row in table(folder / "decisions.csv")}
@@ -201,3 +204,95 @@ def test_prices_changed_in_the_file_count_when_confirmed_as_if_the_papers_had_st
     assert after("--undo", stroke, "--yes") == 0
     assert table(folder / "decisions.csv")[-1]["withdraws"] == stroke
     assert (folder / "marks.csv").read_text("utf-8") == decided
+
+
+def test_digits_and_the_other_case_count_as_if_the_papers_had_stated_them(tmp_path, capsys):
+    """One student took the other assembly, another rounded a velocity beyond the margin of four digits."""
+    course = coursework.open_course()
+    exercise = course["four_bar_motion"]
+    variant = exercise.variant(3)
+    own = {i: v for i, v in variant.solution().items() if i in variant.part_ids}
+    mode = "crossed" if variant.given["mode"] == "open" else "open"
+    other = Variant(exercise, 3, {**variant.given, "mode": mode}, "en").solution()
+    key, part = Key(variant), next(p for p in variant.parts if p.id == "omega4")
+    off = key.reference["omega4"] + 1.5 * key.half_width(part)
+    written = {"Ada": {i: other[i] for i in own}, "Bo": own | {"omega4": off}, "Cy": own}
+    papers = issue(
+        tmp_path, [{"student": n, "record": variant.record} for n in written], exercises=["four_bar_motion"]
+    )
+    rows = [
+        [n, "four_bar_motion", 3, i, f"{v:.12g}"]
+        for n, answers in written.items()
+        for i, v in answers.items()
+    ]
+    file, rules = tmp_path / "week3.toml", {"digits": 3, "other_case": 0.5}
+    file.write_text(
+        'out = "."\n[[exercises]]\nname = "four_bar_motion"\n[marking]\ndigits = 3\nother_case = 0.5\n',
+        "utf-8",
+    )
+
+    def points():
+        return [row["points"] for row in table(tmp_path / "marks" / "marks.csv")]
+
+    grade(course, papers, rows)
+    before = points()
+    assert run(["after", str(file), "--restated", "--yes"]) == 0
+    (stroke,) = {row["id"] for row in table(tmp_path / "marks" / "decisions.csv")}
+    capsys.readouterr()
+    run(["after", str(file)])
+    assert f"{stroke}  " in capsys.readouterr().out
+    applied = points()
+    assert run(["after", str(file), "--undo", stroke, "--yes"]) == 0
+    assert points() == before
+    plain = tmp_path / "issued.json"
+    content = json.loads(plain.read_text("utf-8"))
+    content["assignment"]["marking"] = rules
+    plain.write_text(json.dumps(content), "utf-8")
+    grade(course, papers, rows)
+    assert points() == applied
+    changed = [k for k, pair in enumerate(zip(before, applied, strict=True)) if pair[0] != pair[1]]
+    assert {rows[k][0] for k in changed} == {"Ada", "Bo"}
+
+
+def test_who_puts_answers_away_is_written_and_told(marked, capsys):
+    folder, after = marked
+    path = folder.parent / "answers.csv"
+    path.write_text(path.read_text("utf-8").replace("hm 3 or 4", "hm hm"), "utf-8")
+    papers = str(folder.parent / "issued.json")
+    run(["--course", str(folder.parent / "small"), "grade", str(path), "--issued", papers, "--no-feedback"])
+    assert after("--put-away", "--yes") == 0
+    lines = table(folder / "decisions.csv")
+    assert [(line["student"], line["by"], len(line["date"])) for line in lines] == [
+        (name, "Mme Roy", 10) for name in ("S10", "S11")
+    ]
+    capsys.readouterr()
+    after()
+    (stroke,) = {line["id"] for line in lines}
+    assert re.search(rf"{stroke}  \d+-\d+-\d+, Mme Roy: .*put away: 2", capsys.readouterr().out)
+    assert after("--weight", "1.1=9", "--yes") == 0  # the next writing keeps who it was
+    assert table(folder / "decisions.csv")[0]["by"] == "Mme Roy"
+    assert after("--undo", stroke, "--yes") == 0
+    assert "provisional" in table(folder / "summary.csv")[0]
+
+
+def test_questions_are_called_by_number_exercise_or_kind(marked, capsys):
+    folder, after = marked
+    assert after("--price", "1.1/slip:sign=0.75", "--price", "crank_pin/slip=1", "--yes") == 0
+    lines = [(line["part"], line["answer"]) for line in table(folder / "decisions.csv")]
+    assert lines == [("x", "slip:sign"), *((part, "slip") for part in "xyv")]
+    assert "2 decisions kept" in capsys.readouterr().out
+    for place, parts in {
+        "1.2": "y",
+        "crank_pin/v": "v",
+        "1": "xyv",
+        "crank_pin": "xyv",
+        "Numbers": "xyv",
+    }.items():
+        assert after("--weight", f"{place}=9", "--yes") == 0
+        lines = [line for line in table(folder / "decisions.csv") if line["kind"] == "weight"][-len(parts) :]
+        assert ("".join(line["part"] for line in lines), len({line["id"] for line in lines})) == (parts, 1)
+        assert after("--undo", "--yes") == 0
+        assert {row["out_of"] for row in table(folder / "summary.csv")} == {"4"}
+    capsys.readouterr()
+    assert after("--weight", "angel=9") == 2
+    assert "the papers have 1.1 to 1.3, and the kinds number" in capsys.readouterr().err

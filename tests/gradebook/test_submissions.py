@@ -17,6 +17,7 @@ from coursework.gradebook.placing import UnplacedError, sheet_of_row
 from coursework.gradebook.rows import AnswerRow, Rejected
 from coursework.gradebook.submissions import find, read_file
 from coursework.issuing.issued import Issued
+from coursework.messages import localised
 from coursework.system.tables import inert
 
 HEADER = "student,exercise,seed,part,answer\n"
@@ -33,6 +34,21 @@ def test_a_plain_csv(tmp_path):
     rows, rejected = read(tmp_path, "a.csv", HEADER + "Ann,x,1,rA,319.8 mm\nBob,x,2,rA,\n")
     assert [(r.student, r.seed, r.answer) for r in rows] == [("Ann", "1", "319.8 mm"), ("Bob", "2", "")]
     assert rejected == []
+
+
+@pytest.mark.parametrize(
+    "titles", ["Étudiant;Exercice;Graine;Question;Réponse", "ETUDIANT;exercice;graine;question;reponse"]
+)
+def test_titles_of_the_columns_in_french_are_read_and_told(tmp_path, titles):
+    rows, rejected = read(tmp_path, "a.csv", f"{titles}\nAnn;x;1;rA;319,8 mm\n")
+    assert ([tuple(r[:5]) for r in rows], rejected) == ([("Ann", "x", "1", "rA", "319,8 mm")], [])
+    _, (refused,) = read(
+        tmp_path, "b.csv", titles.replace("Graine", "").replace("graine", "") + "\nAnn;x;;rA;3\n"
+    )
+    assert "étudiant, exercice, graine, question, réponse ; il manque" in localised(
+        refused.reason, "fr"
+    ).replace("\u202f", " ")
+    assert "student, exercise, seed, part, answer" in str(refused.reason)
 
 
 @pytest.mark.parametrize("encoding", ["utf-8", "utf-8-sig", "utf-16"])

@@ -8,6 +8,7 @@ from site_people import TEACHER
 
 from coursework.database.assignments import issued_content, put_issued
 from coursework.database.decisions import read_decisions
+from coursework.site.desk import after_exam
 from coursework.site.desk.class_cache import class_now
 
 QUESTION = f"{EXERCISE}/rA"
@@ -96,8 +97,10 @@ def test_provisional_marks_are_named_and_left_out_and_non_answers_put_away(desk)
     assert "Saved. Answers that say nothing, put away: 1." in reply.text
     provisional = [name for name, result in class_now(desk.site, desk.number).results.items() if result.open]
     assert provisional == ["Bo"]
-    assert "put away: 1" in desk.page(TEACHER, "/after").text
-    browser.fill(f"/desk/{desk.number}/after", {"do": "undo", "undo": "away"})
+    (aside,) = re.findall(
+        rf"{TEACHER}: [^<]*put away: 1.*?undo=(\w+)", desk.page(TEACHER, "/after").text, re.DOTALL
+    )
+    browser.fill(f"/desk/{desk.number}/after", {"do": "undo", "undo": aside})
     assert class_now(desk.site, desk.number).results["Ada"].open
 
 
@@ -141,3 +144,49 @@ def test_a_scale_gives_marks_to_an_assignment_that_stated_none(desk):
     assert ">Mark<" not in desk.page(TEACHER).text
     desk.browser(TEACHER).fill(f"/desk/{desk.number}/after", {"do": "confirm", "kind": "full", "points": "2"})
     assert ">Mark<" in desk.page(TEACHER).text
+
+
+def test_a_file_changed_after_issuing_is_told_on_the_page_and_applied_as_one_decision(desk):
+    before, browser, path = points(desk), desk.browser(TEACHER), f"/desk/{desk.number}/after"
+    file = '[[exercises]]\nname = "slotted_mechanism"\npoints = {{ rA = {0} }}\n[marking]\ndigits = 3\n'
+    assert "now differs from the papers" not in desk.page(TEACHER, "/after").text
+    for source, done in (
+        (file.format(7), "out of 7"),
+        ("name =", "week3.toml"),
+        (file.format("-1"), "points"),
+    ):
+        sent = ("week3.toml", source.encode())
+        reply = browser.fill(path, {"do": "compare"}, files={"file": sent})
+        assert done in reply.text
+        assert steps_of(desk) == ()
+        browser.fill(path, {"do": "confirm", "kind": "file", "source": source})
+        assert {step.kind for step in steps_of(desk)} == ({"weight", "digits"} if "out of" in done else set())
+        if steps_of(desk):
+            assert points(desk)["Ada"][1] > before["Ada"][1]
+            browser.fill(path, {"do": "undo", "undo": steps_of(desk)[0].id})
+        assert (points(desk), steps_of(desk)) == (before, ())
+
+
+def test_the_file_in_the_folder_of_the_course_is_compared_at_every_look(desk, tmp_path, monkeypatch):
+    file = tmp_path / "week3.toml"
+    file.write_text('[[exercises]]\nname = "slotted_mechanism"\n[marking.prices]\nsign = 0.1\n')
+    monkeypatch.setattr(after_exam, "own_file", lambda course, name: file)
+    page = desk.page(TEACHER, "/after", lang="fr")
+    assert re.search(r"autre chose que les copies.*« Étourderie.*laisse 10 %", page.text, re.DOTALL)
+    assert "?kind=file#preview" in page.text
+
+
+def test_questions_of_a_kind_or_of_an_exercise_change_as_one_decision(desk):
+    browser, path, before = desk.browser(TEACHER), f"/desk/{desk.number}/after", points(desk)
+    numbers = [p.id for p in desk.variant.parts if p.kind == "number"]
+    for place, several in (("number", numbers), (EXERCISE, [p.id for p in desk.variant.parts])):
+        reply = browser.fill(path, {"do": "confirm", "kind": "weight", "question": place, "points": "9"})
+        assert re.search(r"Saved. Questions 1\.\d, 1\.\d.*: out of 9", reply.text)
+        assert [step.part for step in steps_of(desk)] == several
+        assert len({step.id for step in steps_of(desk)}) == 1
+        browser.fill(path, {"do": "undo", "undo": steps_of(desk)[0].id})
+        assert (points(desk), steps_of(desk)) == (before, ())
+    assert (
+        "of one question"
+        in browser.fill(path, {"do": "confirm", "kind": "accepted", "question": "number", "answer": "1"}).text
+    )

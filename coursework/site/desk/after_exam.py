@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Mapping, Sequence
+from pathlib import Path
 from typing import Any
 
 from starlette.responses import Response
 
+from coursework.course.course import Course
 from coursework.database.class_state import ClassState
 from coursework.database.decisions import decide
 from coursework.database.permissions import Permission
@@ -16,33 +18,38 @@ from coursework.gradebook import after_words
 from coursework.gradebook.adjustments import (
     ADJUSTMENTS,
     CURVE,
+    DIGITS,
     FULL,
-    ON_SCALE,
+    OF_NO_QUESTION,
     PRICE,
     PRICED,
     STEP,
     TOLERANCE,
     WEIGHT,
 )
-from coursework.gradebook.after import Exam, Preview, step, undoing
+from coursework.gradebook.after import Exam, Preview, Restated, restated, steps_on, undoing
 from coursework.gradebook.decisions import ACCEPTED, GIVEN, Decision
 from coursework.gradebook.statistics.captions import Names
+from coursework.issuing.assignment import OPTIONS, assignment_of
 from coursework.language.numbers import localise, typed_number
 from coursework.language.words import words
 from coursework.messages import localised
 from coursework.site.desk.class_cache import class_here, class_now, class_page_of
 from coursework.site.desk.question_cards import moment
 from coursework.site.desk.question_page import statistics_of
+from coursework.site.frame.budgets import DESK_FILE
 from coursework.site.frame.requests import Request, Route
+from coursework.system.toml_files import source_of, table_of
 
+FILE = "file"  #: kind of a change: what the file of the assignment states now
 OFFERED = (*ADJUSTMENTS, ACCEPTED, GIVEN)  #: changes that the form offers
-_VALUED = (WEIGHT, TOLERANCE, PRICE, FULL, STEP, GIVEN)  #: changes with a number
+_VALUED = (WEIGHT, TOLERANCE, DIGITS, PRICE, FULL, STEP, GIVEN)  #: changes with a number
 _ANSWERED = (PRICE, CURVE, ACCEPTED, GIVEN)  #: changes with a text
 _LONGEST = 500  #: characters of a text
-_FIELDS = ("kind", "question", "points", "answer", "error", "why")
+_FIELDS = ("kind", "question", "points", "answer", "error", "why", "source")
+_MOST_SOURCE = 200_000  #: characters of a file of an assignment
 _MOST_ROWS = 400  #: changed marks in the table
 _MOST_IDS = 1000  #: decisions undone at once
-PUT_ASIDE = "away"  #: in place of ids: what says nothing and was put away
 
 
 def exam_of(now: ClassState) -> Exam:
@@ -69,16 +76,46 @@ def after_exam(request: Request) -> Response:
     if not request.is_post:
         fields = {name: request.query_params.get(name, "") for name in (*_FIELDS, "undo")}
         return _page(request, now, fields)
-    message, fields = "", dict.fromkeys(_FIELDS, "")
+    message, fields = "", dict.fromkeys((*_FIELDS, "undo"), "")
+    if request.form.text("do") == "compare":
+        return _page(request, now, fields | {"kind": FILE, "source": _source_sent(request)})
     try:
-        message = _done(request, exam_of(now))
+        message = _done(request, now, exam_of(now))
     except BadInput as fault:
         message = localised(fault)
-        fields = {name: request.form.text(name) for name in _FIELDS}
+        fields |= {name: request.form.text(name) for name in _FIELDS}
     return _page(request, class_now(request.site, now.about.id), fields, message)
 
 
-def _done(request: Request, exam: Exam) -> str:
+def _source_sent(request: Request) -> str:
+    """Return the text of the file that a form sends; empty if it sends none."""
+    sent = request.form.upload("file")
+    return sent.data.decode("utf-8-sig", "replace")[:_MOST_SOURCE] if sent else ""
+
+
+def own_file(course: Course, name: str) -> Path:
+    """Return where the folder of a course has the file of an assignment, if it has it."""
+    return course.folder.root / f"{name}.toml"
+
+
+def _restated(request: Request, now: ClassState, exam: Exam, source: str) -> Restated:
+    """Return how the assignment's file differs from what was issued: the file that was sent, or else that of its name in the
+    folder of the course. Without either nothing differs.
+
+    Raises
+    ------
+    BadInput
+        The file states no assignment.
+    """
+    path = own_file(request.site.course, now.about.name)
+    if not source and not path.is_file():
+        return Restated((), ())
+    table = table_of(source or source_of(path), path.name)
+    stated = {key: value for key, value in table.items() if key not in OPTIONS}
+    return restated(assignment_of(now.about.name, stated, request.site.course, source), exam)
+
+
+def _done(request: Request, now: ClassState, exam: Exam) -> str:
     """Keep what the form asks for; return the message."""
     texts, by = words(request.lang)["after"], request.actor.name
     asked = request.form.text("do")
@@ -90,9 +127,11 @@ def _done(request: Request, exam: Exam) -> str:
         kept = undoing(undone, by)
         done = "; ".join(_undone_texts(exam, undone, request.lang, "undone"))
     elif asked == "confirm":
-        kept = [_step({name: request.form.text(name) for name in _FIELDS}, by)]
+        kept = _steps(request, now, exam, {name: request.form.text(name) for name in _FIELDS})
+        if not kept:
+            return str(texts["file_same"])
         exam.preview(kept)  # one that makes no sense stops here
-        done = after_words.step_text(exam, kept[0], request.lang)
+        done = after_words.stroke_text(exam, kept, request.lang)
     else:
         return ""
     number = request.path_params["assignment"]
@@ -111,16 +150,14 @@ def _done(request: Request, exam: Exam) -> str:
 
 
 def _undone(exam: Exam, asked: str) -> Sequence[Decision]:
-    """Return the standing decisions that a page names by their ids, or what was put away.
+    """Return the standing decisions that a page names by their ids.
 
     Raises
     ------
     BadInput
         One of them does not stand, or none is named.
     """
-    found = (
-        exam.put_aside if asked == PUT_ASIDE else exam.undoable(asked.replace(",", " ").split()[:_MOST_IDS])
-    )
+    found = exam.undoable(asked.replace(",", " ").split()[:_MOST_IDS])
     if not found:
         raise BadInput("nothing is decided that could be undone")
     return found
@@ -137,19 +174,25 @@ def _undone_texts(exam: Exam, undone: Sequence[Decision], lang: str, tense: str)
     ]
 
 
-def _step(fields: Mapping[str, str], by: str) -> Decision:
-    """Return the step that the fields of a form state.
+def _steps(request: Request, now: ClassState, exam: Exam, fields: Mapping[str, str]) -> list[Decision]:
+    """Return the steps that the fields of a form state, one stroke.
 
     Raises
     ------
     BadInput
         They state none.
     """
-    kind = fields["kind"]
+    kind, by = fields["kind"], request.actor.name
+    if kind == FILE:
+        changed, why = (
+            _restated(request, now, exam, fields["source"]),
+            words(request.lang)["after"]["file_why"],
+        )
+        return [one._replace(by=by, reason=why) for one in changed.steps]
     if kind not in OFFERED:
         raise BadInput("no change is chosen")
-    exercise, _, part = fields["question"].partition("/") if kind not in ON_SCALE else ("", "", "")
-    if not exercise and kind not in (*ON_SCALE, PRICE):
+    place = "" if kind in OF_NO_QUESTION else fields["question"]
+    if not place and kind not in (*OF_NO_QUESTION, PRICE):
         raise BadInput("no question is chosen")
     points = typed_number(fields["points"].strip()) if kind in _VALUED else None
     if points is not None and points != points:
@@ -158,7 +201,7 @@ def _step(fields: Mapping[str, str], by: str) -> Decision:
     answer = text.strip()[:_LONGEST] if kind in _ANSWERED else None
     if kind in _ANSWERED and not answer:
         raise BadInput("this change needs a text: the answer, the verdict or the curve")
-    return step(kind, exercise, part, points, answer, fields["why"].strip()[:_LONGEST], by)
+    return steps_on(exam, kind, place, points, answer, fields["why"].strip()[:_LONGEST], by)
 
 
 def _page(request: Request, now: ClassState, fields: Mapping[str, str], message: str = "") -> Response:
@@ -169,20 +212,28 @@ def _page(request: Request, now: ClassState, fields: Mapping[str, str], message:
     if fields["kind"] or fields.get("undo"):
         try:
             if fields["kind"]:
-                changes = [_step(fields, request.actor.name)]
-                texts = [after_words.step_text(exam, one, lang) for one in changes]
+                changes = _steps(request, now, exam, fields)
+                texts = [after_words.stroke_text(exam, changes, lang)] if changes else []
+                message = message or ("" if changes else words(lang)["after"]["file_same"])
                 written_so = exam.count_of(changes[0]) if changes[0].kind in (ACCEPTED, GIVEN) else None
             else:
                 undone = _undone(exam, fields["undo"])
                 changes = undoing(undone, request.actor.name)
                 texts = _undone_texts(exam, undone, lang, "to_undo")
-            preview = exam.preview(changes)
+            preview = exam.preview(changes) if changes else None
         except BadInput as fault:
             message = message or localised(fault)
+    try:
+        changed = _restated(request, now, exam, fields.get("source", ""))
+    except BadInput as fault:
+        changed = Restated((), ())
+        message = message or localised(fault)
     names_of = Names(now.course, statistics_of(now), lang)
     captions = {(one.exercise, one.part): names_of.question(one) for one in exam.table}
     current = exam.distribution()
     strokes = after_words.stroke_texts(exam, exam.decisions.standing_steps, lang)
+    aside = after_words.stroke_texts(exam, exam.put_aside, lang)
+    sorts = words(lang)["after"]["sorts"]
     names: dict[str, Any] = {
         "exam": exam,
         "fields": fields,
@@ -192,7 +243,9 @@ def _page(request: Request, now: ClassState, fields: Mapping[str, str], message:
         "written_so": written_so,
         "current": current,
         "bins": after_words.bins(current, lang),
-        "steps": [(moment(one.made, lang) if one.made else "", one, text) for one, text in strokes],
+        "steps": [
+            (moment(one.made, lang) if one.made else "", one, text) for one, text in (*strokes, *aside)
+        ],
         "offered": OFFERED,
         "caption": lambda question: captions[question.exercise, question.part],
         "number": lambda value: after_words.number(value, lang),
@@ -200,9 +253,20 @@ def _page(request: Request, now: ClassState, fields: Mapping[str, str], message:
         "points_text": lambda question: after_words.points_text(question, lang),
         "counting_text": lambda question: after_words.counting_text(question, lang),
         "errors": _errors(exam, lang),
-        "on_questions": [kind for kind in OFFERED if kind not in ON_SCALE],
+        "file_says": [text for _, text in after_words.stroke_texts(exam, changed.steps, lang)],
+        "file_notes": [localised(note) for note in changed.notes],
+        "kind_of_file": FILE,
+        "kinds": {
+            kind: f"{sorts.get(kind, kind)} ({len(among)})"
+            for kind, among in exam.kinds.items()
+            if len(among) > 1
+        },
+        "exercises": {
+            name: f"{exam.exercise_number(name)} {now.course[name].title(lang)}"
+            for name in dict.fromkeys(exercise for exercise, _ in exam.questions)
+        },
+        "on_questions": [kind for kind in OFFERED if kind not in OF_NO_QUESTION],
         "ids": [one.id for one, _ in strokes],
-        "put_aside": PUT_ASIDE,
         "most_rows": _MOST_ROWS,
         "most": max((*current.counts, *(preview.now.counts if preview else ())), default=0),
     }
@@ -225,4 +289,12 @@ def _errors(exam: Exam, lang: str) -> list[tuple[str, str, int]]:
     return sorted(named, key=lambda one: (":" in one[0], -one[2], one[1]))
 
 
-ROUTES = (Route("/desk/{assignment:int}/after", after_exam, Permission.MARKS_REGRADE, takes_forms=True),)
+ROUTES = (
+    Route(
+        "/desk/{assignment:int}/after",
+        after_exam,
+        Permission.MARKS_REGRADE,
+        takes_forms=True,
+        budget=DESK_FILE,
+    ),
+)
