@@ -89,7 +89,8 @@ def as_picture(data: bytes) -> np.ndarray:
 
 
 def read_told(picture: PageImage, papers: Papers, reader: object, least: float) -> PageRead:
-    """Stands for the reading of pages where what they say is told: ``~`` is what a person must look at."""
+    """Stands for the reading of pages where what they say is told: ``~`` is what a person must look at, ``≈`` a number that
+    is probably read right."""
     try:
         said = json.loads(picture.grey.tobytes().rstrip(b"\0"))
         _, code, number = said["code"].split(" ")
@@ -117,6 +118,11 @@ def _field_told(field: AnswerField, told: str | list[str]) -> FieldRead:
     text = told if isinstance(told, str) else told[field.coordinate]
     if text.startswith("~"):
         return FieldRead(field, text[1:], 0.5, "free", crop=np.full((90, 900), 200, np.uint8))
+    if text.startswith("≈"):
+        likely = text[1:]
+        return FieldRead(
+            field, likely, 0.9, "doubted", (), np.full((90, 900), 220, np.uint8), ((likely, 0.9),)
+        )
     if field.what == "ticks":
         cases = tuple(field.ticks["abcdefghijklm".index(letter)][0] for letter in text.split(", ") if letter)
         return FieldRead(field, ", ".join(cases), 1.0, cases=cases)

@@ -84,6 +84,11 @@ class AnswerCard:
     pages: tuple[str, ...] = ()  #: ids, of the scans to look at
 
     @property
+    def is_likely(self) -> bool:
+        """Whether the number is probably read right, though not with the confidence that is asked."""
+        return self.waits == DOUBTED and bool(self.candidate)
+
+    @property
     def id(self) -> str:
         key = (self.student, self.paper, self.exercise, self.seed, self.part, self.coordinate, *self.pages)
         return sha256("\0".join(map(str, key)).encode()).hexdigest()[:16]

@@ -65,9 +65,11 @@ class ScanQueue:
 
     @cached_property
     def cards(self) -> list[AnswerCard]:
-        """Pages and papers that nobody knows, then question after question, all students together."""
+        """Pages and papers that nobody knows, then question after question, all students together; of each question last the
+        numbers that are probably read right, which a person compares with their pictures at a glance."""
         return sorted(
-            self.found.cards, key=lambda c: (self._rank(c), c.student, c.seed, c.coordinate, c.part)
+            self.found.cards,
+            key=lambda c: (self._rank(c), c.is_likely, c.student, c.seed, c.coordinate, c.part),
         )
 
     def _rank(self, card: AnswerCard) -> int:
@@ -151,6 +153,7 @@ def _card_content(queue: ScanQueue, card: AnswerCard, cut: Cut) -> dict[str, Any
         "waits": card.waits,
         "candidate": card.candidate,
         "confidence": round(100 * card.confidence),
+        "likely": card.is_likely,
         "part": card.part,
         "coordinate": card.coordinate + 1 if sort == "question" else 1,
         "coordinates": card.coordinates,

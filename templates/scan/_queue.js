@@ -76,10 +76,21 @@
       const own = cards.filter((card) => card.group === group.id);
       const section = make("section", {}, make("h2", {}, heading(group)));
       if (group.letters.length) section.append(make("p", { class: "small" }, fill(said("queue.letters"), group.letters.join(", "))));
-      for (const card of own) section.append(cardOf(card));
+      const likely = own.filter((card) => card.likely);
+      for (const card of own) if (likely.length < 2 || !card.likely) section.append(cardOf(card));
+      if (likely.length > 1) section.append(together(likely));
       room.append(section);
     }
     count();
+  }
+  // One tap confirms the readings that nobody has corrected; it stands behind the last picture.
+  function together(likely) {
+    const all = make("button", { type: "button", class: "main" }, fill(said("queue.confirm_all"), likely.length));
+    all.addEventListener("click", () => {
+      for (const card of likely) if (!state.get(card.id).touched) settle(card, true, false);
+      nextOpen(likely[likely.length - 1]);
+    });
+    return make("div", { class: "likely" }, make("p", {}, fill(said("queue.likely"), likely.length)), ...likely.map(cardOf), make("p", { class: "buttons" }, all));
   }
   function cardOf(card) {
     const one = state.get(card.id);

@@ -156,3 +156,27 @@ def test_pictures_lie_beside_the_page_where_they_are_too_many_for_it(read, scann
     assert image.get_attribute("src").startswith("../crops/")
     page.close()
     assert rows(read / "answers.csv")
+
+
+@pytest.mark.parametrize("width", [390, 1280])
+def test_numbers_that_are_probably_read_right_are_confirmed_by_one_tap(
+    pages_are_told, browser, scanned, tmp_path, width
+):
+    for k, name in enumerate(NAMES):
+        answers = {"rA": "~" if k == 0 else f"≈12{k} mm", "theta4": f"≈{k}", "omega4": f"≈7.{k}"}
+        save(tmp_path / "scans" / f"{k}.png", scanned.told(name, 1, answers))
+    scan(scanned.course, [tmp_path / "scans"], scanned.issued, tmp_path / "read")
+    page = browser.new_page(viewport={"width": width, "height": 900})
+    page.goto((tmp_path / "read" / "queue" / "index.html").as_uri())
+    assert page.locator(".likely .card").count() == 8
+    assert page.evaluate("document.documentElement.scrollWidth") <= width
+    first = page.locator(".likely").first
+    first.locator("input").first.fill("99 mm")
+    first.locator("> .buttons button").click()
+    assert (page.locator(".is-done").count(), first.locator(".is-done").count()) == (1, 1)
+    page.locator(".likely > .buttons button").evaluate_all("all => all.forEach((one) => one.click())")
+    assert page.locator(".is-done").count() == 7
+    typed = cells(saved(page, "#save-typed", tmp_path / "typed.csv"))[1:]
+    assert sorted(line[5] for line in typed)[-3:] == ["7.0", "7.1", "7.2"]
+    assert "99 mm" not in {line[5] for line in typed}
+    page.close()
