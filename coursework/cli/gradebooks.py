@@ -113,7 +113,7 @@ def gradebook(
         out=out,
         total=_of(filled, scored),
     )
-    return max(_print_filled(filled, out), status)
+    return max(_print_filled(filled, marks), status)
 
 
 def _final(scored: Sequence[Scored], provisional: bool) -> tuple[Sequence[Scored], int]:
@@ -150,7 +150,7 @@ def _of(filled: Filled, scored: Sequence[Scored]) -> str:
     )
 
 
-def _print_filled(filled: Filled, out: Path) -> int:
+def _print_filled(filled: Filled, marks: Path) -> int:
     """Say who is left as they were, and why; whether somebody must look."""
     for description, names in (
         (Message("marks but no line in the export; not written"), filled.strangers),
@@ -165,7 +165,22 @@ def _print_filled(filled: Filled, out: Path) -> int:
                 description=description,
                 listed=_listed(names),
             )
-    return FOUND if filled.strangers or filled.unclear else DONE
+    return FOUND if filled.strangers or filled.unclear or _tell_rejected(filled, marks) else DONE
+
+
+def _tell_rejected(filled: Filled, marks: Path) -> int:
+    """Say that somebody without a mark may have answered, in rejected rows; return their number."""
+    from coursework.gradebook.changes import rows_of
+
+    path = marks / "rejected.csv"
+    count = sum(1 for _ in rows_of(path)) if filled.absent and path.is_file() else 0
+    if count:
+        warn(
+            "{rows} in {file}: somebody without a mark may have answered there",
+            rows=counted(count, "row"),
+            file=path,
+        )
+    return count
 
 
 def _listed(names: Sequence[str]) -> str:

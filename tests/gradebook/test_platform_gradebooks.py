@@ -78,6 +78,15 @@ def test_moodles_export_is_filled_and_every_other_byte_stays(fill):
     assert "1 student with no marks; left as they were: Bob Ray" in told
 
 
+def test_who_has_no_mark_may_have_answered_in_rejected_rows(fill, tmp_path):
+    (tmp_path / "marks").mkdir()
+    (tmp_path / "marks" / "rejected.csv").write_text(
+        "student,reason\nBbo Ray,no student\nBbo Ray,no student\n"
+    )
+    status, told, _ = fill("moodle", "moodle_gradebook_en.csv", ANN, EMILE, BOB)
+    assert (status, "2 rows in" in told) == (1, True)
+
+
 def test_a_stranger_is_told_and_never_written(fill):
     status, told, data = fill("moodle", "moodle_gradebook_en.csv", ANN, EVE)
     assert status == 1
