@@ -22,6 +22,7 @@ DEGREES = {f.__name__: f for f in (sin, cos, tan, asin, acos, atan2, sqrt)}  #: 
 _ARGUMENTS = {"atan2": 2, "hypot": 2, "min": 2, "max": 2}  #: of functions that take more than one
 _MOST_POWER, _DEEPEST, _LARGEST = 9, 40, 1e12
 _IN_CODE = {"min": "np.minimum", "max": "np.maximum", "hypot": "np.hypot"}
+_EQUALS = re.compile(r"(?<![<>=!])=(?!=)")  #: alone, which compares nothing
 _LITERAL = re.compile(
     r"(?<![\w.])(\d+(?:\.\d+)?(?:[eE][+-]?\d+)?)\s*([A-Za-zµ°][A-Za-z°²³]*(?:[*/^][A-Za-z0-9²³]+)*)(?!\w)"
 )
@@ -277,6 +278,8 @@ class ExpressionReader:
         WrongValue
             It cannot be read, or compares what has different units.
         """
+        if _EQUALS.search(str(text)):
+            raise self._no_condition(str(text))
         tree, literals = self._tree(text)
         code, names = self._condition(tree, literals, str(text))
         return QuantityExpression(code, names)
@@ -303,7 +306,12 @@ class ExpressionReader:
             tree = ast.parse(plain, mode="eval").body
         except (SyntaxError, ValueError, RecursionError):
             self._refuse_product(text)
-            raise WrongValue(Message("{text} is no expression", text=repr(text))) from None
+            raise WrongValue(
+                Message(
+                    "{text} is no expression: names, numbers with units, + - * / ^ and functions",
+                    text=repr(text),
+                )
+            ) from None
         if _depth(tree) > _DEEPEST:
             raise WrongValue(Message("{text} is nested too deep", text=repr(text)))
         return tree, literals
@@ -447,7 +455,10 @@ class ExpressionReader:
             case ast.Call(func=ast.Name(id=name)) if name in self.calls:
                 found = self._called(node)
                 return found.code, found.names
-        raise WrongValue(
+        raise self._no_condition(text)
+
+    def _no_condition(self, text: str) -> WrongValue:
+        return WrongValue(
             Message(
                 'a condition compares, such as "r2 < r4", or calls {functions}; found {text}',
                 functions=", ".join(self.calls),

@@ -10,6 +10,7 @@ from coursework.linkages.groups import Dyad, Group, HigherGroup, Wheel
 from coursework.linkages.higher_groups import HigherGroupWriter
 from coursework.linkages.points import Arm, SlideLine, UsualMistake, dotted, local_plane, over, rotated
 from coursework.linkages.terms import Heading, Plane, Sum
+from coursework.messages import Message
 
 
 class FormulaWriter(HigherGroupWriter):
@@ -65,7 +66,7 @@ class FormulaWriter(HigherGroupWriter):
                 ("assembly", point),
                 "{point} is assembled {found}; found {value}",
                 point=point,
-                found=" or ".join(sorted(wanted)),
+                found=Message("left or right") if "left" in wanted else Message("ahead or behind"),
                 value=entry.ways[0],
             )
         sign = 1

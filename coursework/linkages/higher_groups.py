@@ -22,7 +22,7 @@ class HigherGroupWriter(LoopWriter):
         linkage = self.linkage
         if linkage.near is None:
             raise linkage.refused(
-                ("assembly",),
+                ("assembly",) if linkage.assembly else ("bodies", group.bodies[0]),
                 'bodies {found} are one group of class {value}: say from where Newton\'s method starts: near = {{ {driver}, E = ["120 mm", "80 mm"], … }}',
                 found=", ".join(group.bodies),
                 value="I" * group.rank if group.rank < 4 else group.rank,

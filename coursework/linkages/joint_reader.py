@@ -38,7 +38,7 @@ class JointReader(TableReader):
         results = {}
         for name, value in table.items():
             at = ("bodies", name)
-            if not _BODY.match(name):
+            if not _BODY.match(name) or name == GROUND:
                 raise self.refused(
                     at,
                     "a body is called by a number from 2 on, or a small letter; found {name!r} (the ground is 1)",
@@ -57,6 +57,10 @@ class JointReader(TableReader):
                 )
             if "at" in value:
                 self._check_point(at, str(origin))
+                if str(origin) in points:
+                    raise self.refused(
+                        at, "the frame of body {name} begins at {point}, which has no other place in it", name=name, point=origin
+                    )  # fmt: skip
                 points = {str(origin): Place(), **points}
             angle = value.get("angle")
             results[name] = BodyEntry(
@@ -218,6 +222,13 @@ class JointReader(TableReader):
                 )
             if of == on:
                 raise self.refused(at, "body {of} does not slide on itself", of=of)
+            if point in (ground if on == GROUND else bodies[on].points):
+                raise self.refused(
+                    at,
+                    "{point} is a point of body {on} itself, where it cannot slide; another body holds it there",
+                    point=point,
+                    on=on,
+                )
             through, name = self._through(at, value.get("through", ["0 mm", "0 mm"]), on, ground, bodies)
             distance = str(value.get("distance", f"s_{point}"))
             drives = on == GROUND and distance in given and given[distance].unit == "mm"

@@ -67,7 +67,11 @@ def linkage_faults(linkage: LinkageFile) -> Iterator[BadInput]:
             count = Message(
                 "3 × {bodies} bodies, less 2 × {pairs} pins and slides", bodies=bodies, pairs=pairs
             )
-        does = Message("nothing moves") if linkage.mobility < 1 else Message("one driver does not settle it")
+        does = (
+            Message("nothing moves; take a bar away, or a pin or slide")
+            if linkage.mobility < 1
+            else Message("one driver does not settle it; a bar between two points, or a slide, holds it")
+        )
         yield linkage.refused(
             ("bodies",),
             "the mechanism has {mobility} degrees of freedom ({count}), a driver moves 1: {does}",
@@ -75,8 +79,9 @@ def linkage_faults(linkage: LinkageFile) -> Iterator[BadInput]:
             count=count,
             does=does,
         )
-    for name, entry in linkage.assembly.items():
-        for point in (name, entry.start, entry.end):
+    named = {name: (name, entry.start, entry.end) for name, entry in linkage.assembly.items()}
+    for name, points_ in {**named, "near": linkage.near.places if linkage.near else ()}.items():
+        for point in points_:
             if point and point not in linkage.points:
                 yield linkage.refused(
                     ("assembly", name),

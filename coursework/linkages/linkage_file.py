@@ -22,7 +22,7 @@ from coursework.linkages.expressions import amount
 from coursework.linkages.joint_reader import JointReader
 from coursework.linkages.linkage_faults import linkage_faults
 from coursework.linkages.table_reader import NAME
-from coursework.messages import as_message
+from coursework.messages import Message, as_message
 from coursework.system.toml_files import source_of, table_of
 
 KEYS = (
@@ -213,6 +213,9 @@ class _LinkageReader(JointReader):
                     key=key,
                     value=value,
                 )
+        for key in ("mobility", "class"):
+            if not isinstance(ask.get(key, True), bool):
+                raise self.refused(("ask", key), "{key} = true; found {value!r}", key=key, value=ask[key])
         points = ask.get("points", {})
         if not isinstance(points, Mapping) or not all(
             isinstance(n, (int, float)) and 0 < n <= _MOST_POINTS for n in points.values()
@@ -232,7 +235,11 @@ class _LinkageReader(JointReader):
         at, torque = ("ask", key), ask[key]
         loads = torque.get("load") if isinstance(torque, Mapping) else None
         loads = [loads] if isinstance(loads, Mapping) else loads
-        form = f'{key} = {{ load = {{ on = "4", moment = "20 N*m" }} }}, or {{ on = "B", force = "100 N", angle = "180 deg" }}'
+        form = Message(
+            "{moment}, or {force}",
+            moment=f'{key} = {{ load = {{ on = "4", moment = "20 N*m" }} }}',
+            force='{ on = "B", force = "100 N", angle = "180 deg" }',
+        )
         if not isinstance(loads, list) or not loads or not all(isinstance(each, Mapping) for each in loads):
             raise self.refused(at, "{form}; found {torque!r}", form=form, torque=torque)
         results = []

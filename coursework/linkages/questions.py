@@ -260,13 +260,7 @@ class QuestionWriter:
 
     def _unknown(self, name: str, at: tuple[str, str], able: Any) -> None:
         listed = [n for n in able if not n.startswith("_")]
-        raise self.linkage.refused(
-            at,
-            "no quantity {name!r}{found}; there are {found_2}",
-            name=name,
-            found=nearest(name, listed),
-            found_2=", ".join(listed),
-        )
+        raise self.linkage.refused(at, "no quantity {name!r}{near}", name=name, near=nearest(name, listed))
 
     # ----------------------------------------------------------------- equations
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Callable, Mapping, Sequence
 from fractions import Fraction
@@ -16,6 +17,7 @@ from coursework.system.toml_files import TomlReader
 NAME = re.compile(r"[A-Za-z][A-Za-z0-9]*(?:_[A-Za-z0-9]+)*\Z")
 POINT = re.compile(r"[A-Z][0-9]*\Z")
 _UNPRINTED = re.compile(r"[\x00-\x1f\x7f{}]")  #: in a title, which becomes a line of a template
+_NEAR = 1e-9  #: of a step: what rounding takes off a multiple of it
 _MOST_ENTRIES = 100  #: of each table and list of a file
 
 
@@ -128,6 +130,8 @@ class TableReader(TomlReader):
 
     def _entry(self, at: tuple[str, str], name: str, value: Any) -> GivenEntry:
         reader = ExpressionReader(self.units)
+        if not value or not isinstance(value, (str, int, float, Mapping)) or isinstance(value, bool):
+            raise self._no_entry(at, name)
         if not isinstance(value, Mapping):
             unit = self._checked(at, reader.unit, value)
             self._has_unit(at, name, unit, value)
@@ -140,12 +144,11 @@ class TableReader(TomlReader):
                     others=", ".join(found.names),
                     value=f'"{value}"',
                 )
+            self._is_length(at, name, unit, float(found.code), value)
             return GivenEntry(unit, value=float(found.code))
         self.only(value, ("from", "to", "step", "nonzero"), at, name)
         if "from" not in value or "to" not in value:
-            raise self.refused(
-                at, '{name} is "180 mm", or {{ from = "40 mm", to = "70 mm", step = "5 mm" }}', name=name
-            )
+            raise self._no_entry(at, name)
         step = value.get("step")
         stated = [v for v in (value["from"], value["to"], step) if v is not None]
         units = [self._checked(at, reader.unit, v) for v in stated]
@@ -163,9 +166,27 @@ class TableReader(TomlReader):
                 value=value["from"],
                 value_2=value["to"],
             )
+        if low.is_number and high.is_number:
+            self._is_length(at, name, unit, float(low.code), value["from"])
+            if math.floor(float(high.code) / width + _NEAR) < math.ceil(float(low.code) / width - _NEAR):
+                raise self.refused(
+                    (*at, "step"),
+                    "no multiple of {step} lies between {low} and {high}: there is no value to draw; choose a smaller step",
+                    step=step, low=value["from"], high=value["to"],
+                )  # fmt: skip
         exact = f"{Fraction(width).limit_denominator(10**6).numerator / Fraction(width).limit_denominator(10**6).denominator:.9g}"
         positive = unit == "mm" and (not low.is_number or float(low.code) > 0)
         return GivenEntry(unit, None, low, high, exact, bool(value.get("nonzero", False)), positive)
+
+    def _no_entry(self, at: tuple[str, str], name: str) -> BadInput:
+        return self.refused(
+            at, '{name} is "180 mm", or {{ from = "40 mm", to = "70 mm", step = "5 mm" }}', name=name
+        )
+
+    def _is_length(self, at: tuple[str, str], name: str, unit: str, number: float, value: object) -> None:
+        """Refuse a bar or a radius, called r3 or R2, that is not above 0."""
+        if unit == "mm" and re.fullmatch(r"[rR][0-9]*", name) and not number > 0:
+            raise self.refused(at, "{name} is a length above 0; found {value!r}", name=name, value=value)
 
     def _has_unit(self, at: Sequence[str | int], name: str, unit: str, value: object) -> None:
         """Refuse a plain number for a quantity whose name says that it has a unit."""

@@ -7,13 +7,18 @@ from dataclasses import dataclass
 
 from coursework.linkages.entries import GROUND, SlideEntry
 from coursework.linkages.formulas import FormulaWriter
-from coursework.linkages.groups import Dyad, Wheel
+from coursework.linkages.groups import Dyad, Group, Wheel
 from coursework.linkages.points import Quantity, UsualMistake, names_in
 from coursework.linkages.terms import Heading, is_zero
 
 PAPER_MM = (160, 90)  #: the box of millimetre paper to draw in
 _FUNCTIONS = {"velocity": "polygon_of_velocities", "acceleration": "polygon_of_accelerations"}
 _POLES = {"velocity": "p_v", "acceleration": "p_a"}
+
+
+def are_drawn(groups: Sequence[Group]) -> bool:
+    """Return True if groups are drawn one after another; one of class III and above, which moves as a whole, is not."""
+    return all(isinstance(group, (Dyad, Wheel)) for group in groups)
 
 
 @dataclass(frozen=True)
@@ -91,7 +96,7 @@ class PolygonWriter:
                 case _:
                     raise self.linkage.refused(
                         ("ask", "polygon"),
-                        "polygons are drawn body after body; {bodies} are one group of class III or above, which moves as a whole",
+                        "polygons are drawn body after body; {bodies} are one group of class III or above, which moves as a whole; ask velocities in their place",
                         bodies=", ".join(group.bodies),
                     )
             drawn.add(found)

@@ -1,5 +1,6 @@
 """A mechanism's file that makes no sense ends in one line: file, line, what was found, what would do."""
 
+import re
 import shutil
 
 import pytest
@@ -10,6 +11,7 @@ from coursework import open_course
 from coursework.authoring.linkage_files import mechanism_alone
 from coursework.errors import BadCourse, BadInput
 from coursework.linkages.compiled import compiled
+from coursework.messages import localised
 
 TOGGLE = (FOLDER / "exercises" / "toggle.toml").read_text("utf-8")
 
@@ -96,6 +98,44 @@ FAULTS = [
     ('r1 = "180 mm"', 'r1 = "180 mm"\nr1 = "90 mm"', 5, "a name stands here twice"),
     ('omega2 = "12 rad/s"', 'omega2 = "12 mm/s"', 9, "a value in rad/s"),
     ("advantage = true", "advantage = true\npoints = { theta7 = 3 }", 32, "no question 'theta7'"),
+    ('r4 = "150 mm"', 'r4 = "-150 mm"', 7, "a length above 0; found '-150 mm'"),
+    ('r4 = "150 mm"', 'r4 = ["150 mm", "160 mm"]', 7, '"180 mm", or { from'),
+    ('r4 = "150 mm"', "r4 = true", 7, '"180 mm", or { from'),
+    ('r4 = "150 mm"', 'r4 = "1e999 mm"', 7, "too large"),
+    ('r4 = "150 mm"', 'r4 = "150 mm + x"', 7, "no quantity 'x'"),
+    ('to = "70 mm", step = "5 mm"', 'to = "70 mm", step = "500 mm"', 5, "choose a smaller step"),
+    (
+        'to = "70 mm", step = "5 mm"',
+        'to = "70 deg", step = "5 mm"',
+        5,
+        "'70 deg' is in deg, where a value in mm stands",
+    ),
+    ('C = ["r1", "0 mm"]', 'C = ["r1", "0 mm", "0 mm"]', 14, 'a place is "r2", ["x", "y"]'),
+    ('C = ["r1", "0 mm"]', 'C = ["r1 * r1", "0 mm"]', 14, "is in mm^2, where a value in mm stands"),
+    (
+        '4 = { at = "C", points = { B = "r4" } }',
+        'ground = { at = "C", points = { B = "r4" } }',
+        19,
+        "found 'ground'",
+    ),
+    (
+        '4 = { at = "C", points = { B = "r4" } }',
+        '4 = { at = "C", points = { B = "r4", C = "r2" } }',
+        19,
+        "begins at C",
+    ),
+    (
+        '4 = { at = "C", points = { B = "r4" } }',
+        '4 = { at = "C", points = ["B", "r4"] }',
+        19,
+        'points = { A = "0 mm"',
+    ),
+    ('"r2 < r4"', '"r2 = r4"', 10, 'a condition compares, such as "r2 < r4"'),
+    ('"r2 < r4"', '"r2 < 40 apples"', 10, "apples"),
+    ("mobility = true", 'mobility = "yes"', 25, "mobility = true; found 'yes'"),
+    ('["theta3", "theta4", "B"]', '"theta3"', 26, "a list of names"),
+    ('moment = "20 N*m"', 'moment = "20 N*m", force = "3 N"', 32, 'or { on = "B", force'),
+    ('moment = "20 N*m"', 'moment = "20 N"', 32, "where a value in N*m stands"),
 ]
 
 
@@ -115,6 +155,10 @@ LENGTHS = [
     ("klann_leg", 'EF = "57.7 mm"', 'EF = "1 mm"', 17, "EG, EF, FG has no value"),
     ("slider_crank", 'equations = ["x", "y", "complex"]', "equations = [{}]", 21, "a list of x, y, complex"),
     ("digger_arm", 'near = { length = "346 mm"', 'near = { angle = "20 deg"', 16, "length ="),
+    ("digger_arm", 'B = ["100 mm", "490 mm"]', 'Z = ["1 mm", "1 mm"], B = ["100 mm", "490 mm"]', 16, "no point 'Z'"),
+    ("digger_arm", 'near = {', 'far = {', 16, "a way to assemble"),
+    ("piston_engine", 'on = "ground", through', 'on = "3", through', 17, "a point of body 3 itself"),
+    ("geared_five_bar", 'radii = ["R2", "R5"]', 'radii = ["R2"]', 20, "a gear is G ="),
 ]  # fmt: skip
 
 
@@ -130,6 +174,9 @@ def test_a_fault_is_told_in_one_line_with_its_place(name, text, other, line, pie
     assert "\n" not in told
     assert told.startswith(f"exercises/toggle.toml, line {line}: "), told
     assert piece in told, told
+    french = re.fullmatch(rf"exercises/toggle\.toml, ligne {line}\s: (.*)", localised(caught.value, "fr"))
+    assert french
+    assert french[1] != told.partition(": ")[2]
 
 
 def test_an_assembly_that_exists_for_no_draw_says_which_constraint_refuses(tmp_path):
