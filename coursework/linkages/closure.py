@@ -133,7 +133,7 @@ def reference_values(
 
 @lru_cache(maxsize=64)
 def _graph(functions: tuple[Callable[..., Any], ...]) -> Graph:
-    return Graph({f.__name__: f for f in functions})
+    return Graph({f.__name__: f for f in functions}).textbook  # what is listed follows from the formulas
 
 
 class RelativeGaps(tuple[Any, ...]):

@@ -185,7 +185,10 @@ class CompiledLinkage:
             code = f"np.minimum.reduce([{lines}]) > {polygon.least} * np.maximum.reduce([{lengths}])"
             results.append(_condition(f"{polygon.kind}_vectors_are_long_enough_to_draw", code))
         asked = [q.name for q in self.questions.questions]
-        rates = [n for n in asked if n.startswith(("omega", "alpha")) and n in formulas.quantities]
+        rates = [
+            n for n in asked
+            if n.startswith(("omega", "alpha")) and n in formulas.quantities and names_in(formulas.quantities[n].code)
+        ]  # fmt: skip
         if linkage.drive.kind != "turn":  # a length's rate is no angle's
             rates = []
         if varies and linkage.speed and rates:

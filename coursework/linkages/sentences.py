@@ -191,7 +191,8 @@ def _statement(writer: SentenceWriter, questions: Sequence[LinkageQuestion]) -> 
     formulas, linkage = writer.formulas, writer.linkage
     sentence = writer.sentence
     fixed = [_frame_point(writer, p, place) for p, place in linkage.ground.items()]
-    bodies = [sentence("statement", "frame", {"points": writer.listed(fixed)})]
+    frame = "frame" if len(fixed) > 1 else "frame_of_one"
+    bodies = [sentence("statement", frame, {"points": writer.listed(fixed)})]
     bodies += [_body(writer, name) for name in formulas.order if name != GROUND]
     joints = [_slide(writer, slide) for slide in linkage.slides.values()]
     for gear in linkage.gears:
