@@ -775,7 +775,7 @@ def symbol_of(name: str) -> str:
     dots = ""
     while rest and rest[-1] in ("dot", "ddot"):
         dots = rest.pop()
-    match = re.fullmatch(r"([A-Za-z]+?)(\d+|[A-Z]\d*)?", stem)
+    match = re.fullmatch(r"([A-Za-z]+?)(\d+[A-Z]?\d*|[A-Z]\d*)?", stem)
     letters, index = match.groups() if match else (stem, None)
     if letters in _GREEK:
         letters = "\\" + letters

@@ -8,6 +8,7 @@ from typing import Any, NamedTuple
 
 from coursework.linkages.compiled import CompiledLinkage
 from coursework.linkages.entries import GROUND
+from coursework.linkages.vectors import are_drawn
 from coursework.system.toml_files import toml_value
 
 SPREAD, STEP = 0.2, 5.0  #: of a length that varies: its share to both sides, and its step in mm
@@ -24,10 +25,10 @@ class CheckBox(NamedTuple):
 
 
 def lengths(text: str, made: CompiledLinkage) -> list[CheckBox]:
-    """Return the given lengths that a line of the text states by numbers, and whether they vary."""
+    """Return the given lengths that a line of the text states by numbers, and whether they vary; one that drives is none of them."""
     found = []
     for name, entry in made.linkage.given.items():
-        if entry.unit == "mm":
+        if entry.unit == "mm" and name != made.linkage.moved:
             is_range = re.search(_RANGE.format(re.escape(name)), text, re.MULTILINE) is not None
             if is_range or re.search(_FIXED.format(re.escape(name)), text, re.MULTILINE):
                 found.append(CheckBox(name, is_range))
@@ -91,6 +92,7 @@ def questions(made: CompiledLinkage) -> dict[str, list[CheckBox]]:
         "mobility": ("mobility",),
         "class": () if linkage.gears else ("class",),
         "positions": [*turns, *slides, *points],
+        "equations": ("equations",) if any(formulas.closure(g) for g in formulas.groups) else (),
     }
     if linkage.speed:
         for key, stem, mark, end in (
@@ -99,7 +101,7 @@ def questions(made: CompiledLinkage) -> dict[str, list[CheckBox]]:
         ):
             rates = [t.replace("theta", stem, 1) for t in turns]
             able[key] = [*rates, *(f"{s}{end}" for s in slides), *(f"{mark}{p}" for p in points)]
-        able["polygon"] = ("velocity", "acceleration") if linkage.drive.kind == "turn" else ()
+        able["polygon"] = ("velocity", "acceleration") if are_drawn(formulas.groups) else ()
         bodies = {"1": GROUND, **{b: b for b in linkage.bodies if b.isdigit() and len(b) == 1}}
         centres = [f"I{i}{j}" for i in bodies for j in bodies if i < j and i != "1"]
         able["instant_centres"] = [
@@ -135,28 +137,46 @@ def with_questions(text: str, made: CompiledLinkage, chosen: Collection[str]) ->
 
     Returns
     -------
-    The text, with a new table ``[ask]``; what a check box does not say there, such as loads and weights, stays.
+    The text, with a new table ``[ask]`` in the order of the one before; what no check box says, such as loads, weights and single
+    coordinates, stays.
     """
-    lines = ["[ask]"]
-    for key, able in questions(made).items():
-        names = [c.name for c in able if f"{key} {c.name}" in chosen]
-        if key in _LISTS and names:
-            listed = ", ".join(f'"{name}"' for name in names)
-            lines.append(f"{key} = [{listed}]")
-        elif names:
-            same = made.linkage.ask.get(key)
-            lines.append(f'{key} = "{same}"' if isinstance(same, str) and same else f"{key} = true")
-    before, after, kept = _parted(text)
-    weights = [line for line in kept if line.lstrip().startswith("torque")]
-    if len(lines) + len(weights) == 1:
+    asked = made.linkage.ask
+    able = {key: [box.name for box in boxes] for key, boxes in questions(made).items()}
+    table: dict[str, Any] = {}
+    for key in dict.fromkeys([*asked, *able]):
+        names = able.get(key, ())
+        if key in _LISTS:
+            listed = dict.fromkeys([*asked.get(key, ()), *names])
+            table[key] = [name for name in listed if name not in names or f"{key} {name}" in chosen]
+        elif not names or f"{key} {names[0]}" in chosen:
+            table[key] = asked.get(key) or True
+    weights = asked.get("points", {})
+    table["points"] = {name: weights[name] for name in weights if _box(made, name, able) in ("", *chosen)}
+    lines = [f"{key} = {toml_value(value)}" for key, value in table.items() if value]
+    before, after = _parted(text)
+    if not any(value for key, value in table.items() if key != "points"):
         lines.append("mobility = true")
     rest = f"\n{after}" if after else ""
-    return "\n".join([before.rstrip("\n"), "", *lines, *weights]) + "\n" + rest
+    return "\n".join([before.rstrip("\n"), "", "[ask]", *lines]) + "\n" + rest
 
 
-def _parted(text: str) -> tuple[str, str, list[str]]:
-    """Return the text before the table of questions, the text after it, and the lines of the table."""
-    lines = text.split("\n")
-    start = next((k for k, line in enumerate(lines) if re.match(r"\s*\[ask\]", line)), len(lines))
-    end = next((k for k in range(start + 1, len(lines)) if re.match(r"\s*\[[a-z]", lines[k])), len(lines))
-    return "\n".join(lines[:start]), "\n".join(lines[end:]), lines[start + 1 : end]
+def _box(made: CompiledLinkage, question: str, able: Mapping[str, Sequence[str]]) -> str:
+    """Return the check box of a question, as ``key name``; '' if it has none."""
+    drawn = {part: each.kind for each in made.questions.polygons for part in (each.scale, *each.parts)}
+    name = drawn.get(
+        question, "equations" if question.startswith("loop_") else question.removeprefix("mechanism_")
+    )
+    return next((f"{key} {name}" for key, names in able.items() if name in names), "")
+
+
+def _parted(text: str) -> tuple[str, str]:
+    """Return the text before the table of questions and the text after it, with the comments that stand above what follows."""
+    lines, headings = text.split("\n"), []
+    for number, line in enumerate(lines):
+        if heading := re.match(r"\s*\[\[?\s*([\w.-]+)\s*\]", line):
+            headings.append((number, heading[1].split(".")[0] == "ask"))
+    start = next((number for number, is_ask in headings if is_ask), len(lines))
+    end = next((number for number, is_ask in headings if number > start and not is_ask), len(lines))
+    while end < len(lines) and lines[end - 1].startswith("#"):
+        end -= 1
+    return "\n".join(lines[:start]), "\n".join(lines[end:])

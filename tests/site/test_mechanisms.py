@@ -2,14 +2,19 @@
 
 import html
 import re
+import tempfile
 import tomllib
+from contextlib import contextmanager
+from pathlib import Path
 
 import pytest
 from site_own_course import OwnCourse
 from site_people import TEACHER, ZOE
 from tables import each_row
 
-from coursework.authoring.linkage_files import LINKAGES
+from coursework import open_course
+from coursework.authoring.linkage_editing import questions
+from coursework.authoring.linkage_files import LINKAGES, mechanism_alone
 from coursework.database.assignments import put_issued
 from coursework.language.words import words
 from coursework.site.mechanisms.mechanism_view import CheckedBoxes, mechanism_view
@@ -161,6 +166,75 @@ def test_boxes_write_what_they_say(name, tmp_path_factory):
     assert {k: v for k, v in now.items() if k not in ("given", "ask")} == {
         k: v for k, v in tomllib.loads(text).items() if k not in ("given", "ask")
     }
+
+
+#: What boxes do not say, in a file that asks more: weights, a load of a driven length, a coordinate, a table behind the questions.
+MORE = {
+    "tipper": "xG", "piston_engine": "xA", "two_loops": "yE", "needle_bar": "xP",
+}  # fmt: skip
+
+
+@each_row("name, coordinate", list(MORE.items()))
+def test_what_boxes_do_not_say_stays(name, coordinate):
+    text = (LINKAGES / "exercises" / f"{name}.toml").read_text("utf-8")
+    text = text.replace('positions = ["', f'positions = ["{coordinate}", "')
+    text += f'\n[ask.points]\n{coordinate} = 3\n# of a book\n[[known]]\ngiven = {{}}\ngives = {{ {coordinate} = "1 mm" }}\n'
+    stated = tomllib.loads(text)
+    first = stated["ask"]["positions"][1]
+    view = mechanism_view(text, name, "en", CheckedBoxes((), (f"positions {first}", "polygon velocity")))
+    now = tomllib.loads(view.text)
+    assert now["ask"]["positions"] == [coordinate, first]
+    assert now["ask"]["polygon"] == ["velocity"]
+    kept = {k: v for k, v in stated["ask"].items() if k in ("thrust", "torque", "points")}
+    assert {k: v for k, v in now["ask"].items() if k in ("thrust", "torque", "points")} == kept
+    assert now["known"] == stated["known"]
+    assert "# of a book\n[[known]]" in view.text
+
+
+@pytest.mark.slow
+def test_what_boxes_offer_makes_an_exercise():
+    """Of every sort of driver, slide and wheel: each polygon, equation, centre and rate that a box offers has variants and answers."""
+    faults = {}
+    for name in (
+        "needle_bar",
+        "digger_arm",
+        "planet_wheel",
+        "geared_five_bar",
+        "slotted_ram",
+        "crossed_slides",
+    ):
+        text = (LINKAGES / "exercises" / f"{name}.toml").read_text("utf-8")
+        with own_file(text, name) as made:
+            boxes = [f"{key} {box.name}" for key, able in questions(made).items() for box in able]
+        drawn = [box for box in boxes if box.startswith("polygon")]
+        for chosen in filter(None, (drawn, [box for box in boxes if box not in drawn])):
+            if fault := mechanism_view(text, name, "en", CheckedBoxes((), tuple(chosen))).fault:
+                faults[name, chosen[0]] = fault
+    assert faults == {}
+
+
+@contextmanager
+def own_file(text, name):
+    with tempfile.TemporaryDirectory() as place:
+        path = Path(place) / f"{name}.toml"
+        path.write_text(text, "utf-8")
+        with mechanism_alone(path, open_course) as (_, made):
+            yield made
+
+
+def test_a_drawing_says_what_is_wrong_without_its_file_first():
+    drawn = "# drawing: {}\n" + TEXT.partition("\n")[2].replace(
+        '4 = { at = "C", points = { B = "r4" } }\n', ""
+    )
+    view = mechanism_view(drawn, "mine", "fr")
+    assert (
+        view.problem
+        == "le solide 3 ne tient qu’en A ; il faut un second point commun ou une glissière pour le tenir"
+    )
+    assert re.fullmatch(r"mine\.toml, ligne \d+", view.place)
+    assert mechanism_view("# drawing: {}\ntitle = 'x'\n", "mine", "fr").problem.startswith(
+        "Rien n’est encore dessiné"
+    )
 
 
 def test_titles_are_written_as_text():

@@ -18,8 +18,9 @@ from coursework.authoring.linkage_editing import lengths, questions, with_length
 from coursework.authoring.linkage_files import mechanism_alone, report
 from coursework.course.folder import course_folder
 from coursework.errors import CourseworkError
+from coursework.language.numbers import localise
 from coursework.language.words import languages, words
-from coursework.messages import localised, messages_in
+from coursework.messages import Message, localised, messages_in
 from coursework.model import symbol_of
 from coursework.rendering.displayed import DisplayedAnimation
 from coursework.rendering.environment import render
@@ -27,6 +28,8 @@ from coursework.rendering.html import environment_of
 from coursework.scenes.animation import Animation
 from coursework.sheets.answer_sheet import answer_sheet
 
+_DRAWN = "# drawing:"  #: begins the first line of a file that was drawn
+_PLACE = re.compile(r"([\w.]+\.toml(?:, (?:line|ligne) \d+)?)\s*: ")
 _VARIANTS = 3
 _LONGEST = 400  #: characters of a fault
 
@@ -49,6 +52,21 @@ class MechanismView:
     fault: str = ""
     line: str = ""
 
+    @property
+    def is_drawn(self) -> bool:
+        return self.text.startswith(_DRAWN)
+
+    @property
+    def place(self) -> str:
+        """Place of the fault in the file, which somebody who draws does not read first."""
+        found = _PLACE.match(self.fault) if self.is_drawn else None
+        return found[1] if found else ""
+
+    @property
+    def problem(self) -> str:
+        """Fault without its place where that stands apart."""
+        return _PLACE.sub("", self.fault) if self.place else self.fault
+
 
 def mechanism_view(text: str, name: str, lang: str, choices: CheckedBoxes | None = None) -> MechanismView:
     """Return what the text of a mechanism's file makes.
@@ -68,6 +86,8 @@ def mechanism_view(text: str, name: str, lang: str, choices: CheckedBoxes | None
     -------
     The piece of the page; that of the fault if the text makes no exercise.
     """
+    if text.startswith(_DRAWN) and "\n[bodies]" not in text:
+        return MechanismView(text, fault=words(lang, "site")["mechanisms"]["drawing"]["nothing"])
     with tempfile.TemporaryDirectory() as place, messages_in(lang), np.errstate(all="ignore"):
         path = Path(place) / f"{name}.toml"
         try:
@@ -111,18 +131,16 @@ def _line(text: str, fault: str) -> str:
 def _found(path: Path, text: str, lang: str) -> dict[str, Any]:
     with mechanism_alone(path, open_course) as (exercise, made):
         variants = [exercise.variant(seed, lang) for seed in range(_VARIANTS)]
+        said, moves = words(lang, "site")["mechanisms"], exercise.spec.driver or exercise.film
         sheets = [answer_sheet(variant, polygons=False) for variant in variants]
-        types = words(lang, "site")["explore"]["types"]
-        rows = [
-            (localised(row["property"], lang), types.get(str(row["value"])) or localised(row["value"], lang))
-            for row in report(exercise, made, 0)
-        ]
+        rows = [_row(row["property"], row["value"], lang) for row in report(exercise, made, 0)]
         return {
             "rows": rows,
-            "moving": _moving(DisplayedAnimation(variants[0]), words(lang, "site")["mechanisms"]["figure"]),
+            "moving": _moving(DisplayedAnimation(variants[0]), said["figure"]) if moves else None,
             "sheets": [(sheet, sheet.handout) for sheet in sheets],
             "titles": [
-                (each, made.linkage.title.get(each) or made.linkage.title.get("", "")) for each in languages()
+                (each, made.linkage.title.get(each) or made.linkage.title.get("", ""))
+                for each in dict.fromkeys([lang, *languages()])
             ],
             "lengths": lengths(text, made),
             "questions": questions(made),
@@ -131,6 +149,16 @@ def _found(path: Path, text: str, lang: str) -> dict[str, Any]:
                 for n in (*made.linkage.given, *(c.name for able in questions(made).values() for c in able))
             },
         }
+
+
+def _row(told: Any, value: Any, lang: str) -> tuple[str, str]:
+    """Return what a mechanism is in the reader's language: a quantity by its symbol, a number with the language's decimal mark."""
+    name = told.values.get("name", "")
+    types = words(lang, "site")["explore"]["types"]
+    said = types.get(str(value)) or (
+        localised(value, lang) if isinstance(value, Message) else localise(str(value), lang)
+    )
+    return localised(told.replacing(name, f"${_symbol(name)}$") if name else told, lang), said
 
 
 def _symbol(name: str) -> str:

@@ -25,11 +25,12 @@ from coursework.issuing.assignment import FILES, OPTIONS, Assignment, assignment
 from coursework.issuing.issued import Issued
 from coursework.issuing.roster import Student, read_roster
 from coursework.language.numbers import localise, typed_number
+from coursework.language.words import words
 from coursework.markup.markdown import plain_line
 from coursework.sheets.handout import prompt
 from coursework.site.frame.budgets import DESK_FILE
 from coursework.site.frame.forms import read_upload
-from coursework.site.frame.requests import Request, Upload
+from coursework.site.frame.requests import FormData, Request, Upload
 from coursework.site.frame.settings import Site
 from coursework.site.publication.assigning import AssignmentRequest
 from coursework.system.toml_files import table_of
@@ -280,6 +281,15 @@ class ChosenExercise(NamedTuple):
     points: str  #: of all ticked parts
 
 
+def proposed(request: Request) -> FormData:
+    """Return the form as an address fills it in: with the exercises that it names, and the title of the first."""
+    course = request.site.course
+    chosen = [name for name in dict.fromkeys(request.query_params.getlist("exercise")) if name in course]
+    return FormData(
+        {"exercise": chosen, "title": [_title(course, name, request.lang) for name in chosen[:1]]}
+    )
+
+
 def chosen_exercises(request: Request) -> list[ChosenExercise]:
     """Return the exercises that a form chooses, in their order, with the parts and points that it states."""
     form, course = request.form, request.site.course
@@ -329,7 +339,8 @@ def _exercise_groups(course: Course[Any], lang: str) -> Iterator[ExerciseGroup]:
         yield ExerciseGroup(
             f"{chapter.number}. {chapter.title(lang)}", _titled(course, chapter.exercises, lang)
         )
-    yield ExerciseGroup("…", _titled(course, [name for name in folder.names if name not in placed], lang))
+    rest = [name for name in folder.names if name not in placed]
+    yield ExerciseGroup(words(lang, "site")["publishing"]["rest"], _titled(course, rest, lang))
 
 
 def _titled(course: Course[Any], chosen: Sequence[str], lang: str) -> tuple[tuple[str, str], ...]:

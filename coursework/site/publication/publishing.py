@@ -158,6 +158,7 @@ def new(request: Request) -> Response:
     """Create an assignment, from its file or chosen exercises and a roster, or from variants that ``build``
     issued."""
     if not request.is_post:
+        request.form = new_assignment.proposed(request)
         return _new_page(request)
     if request.form.text("do") == "look":
         return _looked_at(request)

@@ -15,7 +15,7 @@
     parts = [...svg.querySelectorAll("[data-moves]")];
     slider = form.querySelector(".turn input");
     form.querySelector(".turn").hidden = false;
-    if (data.way.length) {
+    if (data.way.length && !svg.querySelector(".handle")) {
       const ring = document.createElementNS("http://www.w3.org/2000/svg", "circle");
       ring.setAttribute("class", "handle");
       ring.setAttribute("r", 4);
@@ -49,6 +49,19 @@
     if (timer) { clearInterval(timer); timer = 0; return; }
     timer = setInterval(() => show((at + 1) % data.frames.length), 60);
   });
-  document.addEventListener("htmx:afterSettle", begin);
+  // The exercise is named after its title, in letters that a name has, until somebody names it.
+  const name = form.querySelector("[name=name]");
+  const plain = (text) => text.normalize("NFD").replace(/[\u0300-\u036f]/g, "").toLowerCase().replace(/[^a-z0-9]+/g, "_").replace(/^[_0-9]+|_+$/g, "").slice(0, 60);
+  function follow() {
+    const title = form.elements[name.dataset.from];
+    if (title) name.value = plain(title.value);
+  }
+  form.addEventListener("input", (event) => {
+    if (event.target === name) delete name.dataset.from;
+    else follow();
+  });
+  form.addEventListener("change", (event) => { if (event.target === name) name.value = plain(name.value); });
+  document.addEventListener("htmx:afterSettle", () => { begin(); follow(); });
   begin();
+  follow();
 })();

@@ -4,10 +4,10 @@
   "use strict";
   const place = document.querySelector(".draw");
   if (!place) return;
-  const MARK = "# drawing: ", HIGH = 320, LETTERS = "ABCDEFGHKLMNPQRSTUVWXYZ", STEP = 5;
+  const MARK = "# drawing: ", HIGH = 320, LETTERS = "ABCDEFGHKLMNPQRSTUVWXYZ", FIXED = "OCDFGHKLMNPQRSTUVWXYZABE", STEP = 5;
   const said = JSON.parse(place.dataset.said), svg = place.querySelector("svg"), told = place.querySelector(".told");
   const area = () => document.getElementById("mechanism-text"), [boxX, boxY] = place.querySelectorAll("input");
-  let now = { points: {}, bodies: [], slides: [] }, past = [], tool = "ground", marks = [], held = "";
+  let now = { points: {}, bodies: [], slides: [] }, past = [], ahead = [], tool = "ground", marks = [], held = "";
 
   const round = (value, step = STEP) => Math.round(value / step) * step || 0;
   const at = (name) => now.points[name], far = (p, q) => Math.hypot(q.x - p.x, q.y - p.y);
@@ -25,8 +25,8 @@
     return far({ x: p.x + s * (q.x - p.x), y: p.y + s * (q.y - p.y) }, c);
   }
   const away = (body, c) => Math.min(...body.map((n, k) => gap(at(n), at(body[(k + 1) % body.length]), c)));
-  function bodyAt(c) {
-    const near = now.bodies.map((body, k) => [away(body, c), k]).filter(([d]) => d < 14 * unit()).sort((a, b) => a[0] - b[0]);
+  function bodyAt(c, reach = 14) {
+    const near = now.bodies.map((body, k) => [away(body, c), k]).filter(([d]) => d < reach * unit()).sort((a, b) => a[0] - b[0]);
     return near.length ? near[0][1] : -1;
   }
 
@@ -34,13 +34,40 @@
   function change(act) {
     const before = copy(now);
     act();
-    past.push(before);
-    write(before);
+    const first = now.bodies.findIndex((body) => body.length === 2 && body.some((n) => at(n).g));
+    if (!drives() && first >= 0) now.driver = first;
+    if (now.bodies.length > 1 && !drives()) tell(said[first < 0 && !Object.values(now.points).some((c) => c.g) ? "no_ground" : "no_driver"]);
+    keep(before);
     render();
   }
+  const drives = () => now.driver >= 0 || now.jack || now.by;
+  function keep(before) {
+    if (JSON.stringify(before) === JSON.stringify(now)) return;
+    past.push({ before, text: area().value });
+    ahead = [];
+    write(before);
+  }
+  // One step back, or again forwards; a text that nobody drew comes back as it was.
+  function step(from, to) {
+    if (!from.length) return;
+    const { before, text } = from.pop(), left = now;
+    to.push({ before: now, text: area().value });
+    [now, marks, held] = [before, [], ""];
+    if (text.startsWith(MARK)) write(left);
+    else put(text);
+    render();
+  }
+  // A new end that is tapped on a body belongs to it.
+  function end(c) {
+    const near = point(c), body = near ? -1 : bodyAt(c, 8), name = near || create(c);
+    if (name && body >= 0) {
+      now.bodies[body].push(name);
+      tell(said.joined.replace("{0}", ranked(now).indexOf(body) + 2));
+    }
+    return name;
+  }
   function create(c, g) {
-    const grounded = !Object.keys(now.points).some((n) => n === "O");
-    const name = g && grounded ? "O" : [...LETTERS].find((n) => !(n in now.points));
+    const name = [...(g ? FIXED : LETTERS)].find((n) => !(n in now.points));
     if (!name) { tell(said.full); return ""; }
     now.points[name] = { x: round(c.x), y: round(c.y), ...(g ? { g: 1 } : {}) };
     return name;
@@ -76,8 +103,8 @@
   function join() {
     const body = [...new Set(marks)];
     marks = [];
-    now.bodies.push(body);
-    if (!(now.driver >= 0) && !now.jack && !now.by && body.length === 2 && body.some((n) => at(n).g)) now.driver = now.bodies.length - 1;
+    if (body.every((n) => at(n).g)) tell(said.frame);
+    else now.bodies.push(body);
   }
   const acts = {
     ground(c) {
@@ -91,14 +118,14 @@
     },
     bar(c) {
       change(() => {
-        const name = point(c) || create(c);
+        const name = end(c);
         if (name && !marks.includes(name)) marks.push(name);
         if (marks.length === 2) join();
       });
     },
     plate(c) {
       change(() => {
-        const name = point(c) || create(c);
+        const name = end(c);
         if (marks.length > 2 && name === marks[0]) join();
         else if (name && !marks.includes(name)) marks.push(name);
       });
@@ -109,6 +136,8 @@
       marks = [];
       change(() => {
         now.slides = now.slides.filter((one) => one.p !== name);
+        const held = on >= 0 && now.bodies[on].includes(name);
+        if (held && now.bodies[on].length > 2) now.bodies[on] = now.bodies[on].filter((n) => n !== name);
         if (on >= 0 && !now.bodies[on].includes(name) && !near) now.slides.push({ p: name, on });
         else now.slides.push({ p: name, a: half(heading(at(name), c)) });
       });
@@ -121,7 +150,7 @@
     },
     jack(c) {
       change(() => {
-        const name = point(c) || create(c);
+        const name = end(c);
         if (name && !marks.includes(name)) marks.push(name);
         if (marks.length === 2) { drive({ jack: marks }); marks = []; }
       });
@@ -151,11 +180,12 @@
   };
 
   // --- text
+  const ranked = (state) => state.bodies.map((_, k) => k).sort((a, b) => (b === state.driver) - (a === state.driver) || a - b);
   const pivot = (state, k) => (state.bodies[k] || []).find((n) => state.points[n].g);
   function compose(state) {
     const given = new Map(), ground = [], bodies = [], slides = [], sides = [], turns = [], P = state.points;
     const put = (name, value, u = "mm") => { given.set(name, `${name} = "${value} ${u}"`); return name; };
-    const order = state.bodies.map((_, k) => k).sort((a, b) => (b === state.driver) - (a === state.driver) || a - b);
+    const order = ranked(state);
     const drive = state.bodies[state.driver] || [], hub = pivot(state, state.driver), slid = rails(state).find((one) => one.p === state.by);
     const origin = P[hub || Object.keys(P).find((n) => P[n].g)] || { x: 0, y: 0 };
     const number = (k) => order.indexOf(k) + 2, first = (body) => body.find((n) => P[n].g) || body[0];
@@ -246,14 +276,22 @@
   }
   // What the boxes, or a hand, have changed stays where the drawing has not.
   function write(before) {
-    if (!now.bodies.length) return;
-    const text = area().value, was = compose(before), is = compose(now), line = (name) => (text.match(new RegExp(`^${name} *=.*$`, "m")) || [""])[0];
+    const text = area().value, line = (name) => (text.match(new RegExp(`^${name} *=.*$`, "m")) || [""])[0];
+    const head = `${MARK}${JSON.stringify(now)}\n${line("title") || said.untitled}\n`;
+    if (!now.bodies.length) {
+      if (text.startsWith(MARK)) put(head);
+      return;
+    }
+    const was = compose(before), is = compose(now);
     const given = [...is.given].map(([name, says]) => (was.given.get(name) === says && line(name)) || says);
     const same = was.shape === is.shape;
     let ask = (same && (text.match(/^\[ask\][^]*$/m) || [""])[0]) || is.ask;
     if (!same || was.load !== is.load) ask = [...ask.split("\n").filter((one) => one && !/^(torque|thrust) *=/.test(one)), is.load, ""].filter((one, k, all) => one || k === all.length - 1).join("\n");
     if (same && line("require")) given.push(line("require"));
-    area().value = `${MARK}${JSON.stringify(now)}\n${line("title") || said.untitled}\n\n[given]\n${given.join("\n")}\n\n${is.tables}\n${ask}`;
+    put(`${head}\n[given]\n${given.join("\n")}\n\n${is.tables}\n${ask}`);
+  }
+  function put(text) {
+    area().value = text;
     area().dispatchEvent(new Event("input", { bubbles: true }));
   }
   function read() {
@@ -280,6 +318,10 @@
     now.bodies.forEach((body, k) => piece("polygon", {
       points: body.map((n) => `${at(n).x},${y(at(n))}`).join(" "), stroke: k === now.driver ? "#0a58a8" : "#000", "stroke-width": k === now.driver ? 5 : 3.5,
       "stroke-linejoin": "round", fill: "#0002" }));
+    ranked(now).forEach((k, rank) => {
+      const body = now.bodies[k].map(at), mean = (axis) => body.reduce((sum, c) => sum + c[axis], 0) / body.length, c = { x: mean("x"), y: mean("y") };
+      piece("text", { x: c.x, y: y(c) + 5, "font-size": 14, "text-anchor": "middle", fill: "#333", stroke: "#fff", "stroke-width": 6, "paint-order": "stroke" }, rank + 2);
+    });
     for (const pair of now.gears || []) {
       const hubs = pair.map((k) => at(pivot(now, k)));
       for (const c of hubs) piece("circle", { cx: c.x, cy: y(c), r: far(...hubs) / 2, fill: "none", stroke: "#555", "stroke-width": 1.5, "stroke-dasharray": "8 3 2 3" });
@@ -299,6 +341,7 @@
       piece("circle", { cx: c.x, cy: y(c), r: marks.includes(n) || n === held ? 8 : 5, fill: marks.includes(n) || n === held ? "#0a58a8" : "#fff", stroke: "#000", "stroke-width": 1.5 });
       piece("text", { x: c.x + 8, y: y(c) - 8, "font-size": 16, fill: "#000" }, n);
     }
+    for (const [name, all] of [["undo", past], ["redo", ahead]]) place.querySelector(`[data-do=${name}]`).disabled = !all.length;
     place.querySelectorAll("[data-tool]").forEach((button) => button.setAttribute("aria-pressed", button.dataset.tool === tool));
   }
   const where = (event) => {
@@ -307,6 +350,7 @@
   };
   function tap(c) {
     if (Number.isNaN(c.x + c.y)) return;
+    tell(said[tool]);
     acts[tool](c);
     [boxX.value, boxY.value] = [round(c.x), round(c.y)];
   }
@@ -323,11 +367,12 @@
     if (far(to, at(drag.name)) >= STEP) { drag.moved = true; Object.assign(at(drag.name), to); render(); }
   });
   for (const end of ["pointerup", "pointercancel"]) svg.addEventListener(end, () => {
-    if (drag && drag.moved) { past.push(drag.before); write(drag.before); held = ""; drag.done = true; }
+    if (drag && drag.moved) { keep(drag.before); held = ""; drag.done = true; }
   });
   svg.addEventListener("click", (event) => { const moved = drag && drag.done; drag = null; if (!moved) tap(where(event)); });
   const does = {
-    undo() { if (!past.length) return; const before = now; now = past.pop(); marks = []; held = ""; write(before); render(); },
+    undo() { step(past, ahead); },
+    redo() { step(ahead, past); },
     clear() { change(() => { now = { points: {}, bodies: [], slides: [] }; marks = []; }); },
     put() { tap({ x: parseFloat(boxX.value.replace(",", ".")), y: parseFloat(boxY.value.replace(",", ".")) }); },
   };
@@ -337,6 +382,17 @@
     if (chosen) { tool = chosen; marks = []; held = ""; tell(said[tool]); render(); }
   });
   place.addEventListener("keydown", (event) => { if (event.key === "Enter" && event.target.matches("input")) { event.preventDefault(); does.put(); } });
+  document.addEventListener("keydown", (event) => {
+    const key = event.key.toLowerCase();
+    if (!(event.ctrlKey || event.metaKey) || !"zy".includes(key) || event.target.matches("input, textarea")) return;
+    event.preventDefault();
+    does[key === "y" || event.shiftKey ? "redo" : "undo"]();
+  });
+  // What is wrong stands under the drawing as well, where a narrow page shows the rest farther below.
+  document.addEventListener("htmx:afterSettle", () => {
+    const fault = document.querySelector("#mechanism-now .gap");
+    place.querySelector(".wrong").textContent = fault ? fault.textContent : "";
+  });
   place.hidden = false;
   read();
   tell(said.ground);
