@@ -85,7 +85,7 @@ class AnswerCard:
 
     @property
     def is_likely(self) -> bool:
-        """Whether the number is probably read right, though not with the confidence that is asked."""
+        """True if the number is probably read right, though not with the confidence that is asked."""
         return self.waits == DOUBTED and bool(self.candidate)
 
     @property
