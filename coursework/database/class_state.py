@@ -20,7 +20,7 @@ from coursework.gradebook.graded_sheet import Graded
 from coursework.gradebook.placing import SheetKey, Sheets
 from coursework.gradebook.presence import presence_on_roster
 from coursework.gradebook.questions import drawn_questions, number_of, questions_of
-from coursework.gradebook.rows import Rejected
+from coursework.gradebook.rows import TITLES, Rejected
 from coursework.gradebook.waiting import (
     SHOWN_ON_REQUEST,
     AnswerGroup,
@@ -62,6 +62,16 @@ class UnplacedRow:
     def reason(self) -> str:
         """Reason of the rejection, in the language of the current messages."""
         return localised(self.row.reason)
+
+    @property
+    def stranger(self) -> str:
+        """Name that it states, if nobody of the class has it."""
+        return "" if self.student else self.row.row.get("student", "")
+
+    @property
+    def cells(self) -> list[tuple[str, str]]:
+        """What it states, with the titles in the language of the current messages."""
+        return [(localised(TITLES.get(name, name)), value) for name, value in self.row.row.items() if value]
 
     @property
     def place(self) -> str:

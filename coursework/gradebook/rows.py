@@ -14,6 +14,15 @@ from coursework.issuing.identity import Ids
 from coursework.messages import Message
 from coursework.system.tables import decode
 
+#: Titles of the columns of answers, which a file may have in any language.
+TITLES = {
+    "student": Message("student"),
+    "exercise": Message("exercise"),
+    "seed": Message("seed"),
+    "part": Message("part"),
+    "answer": Message("answer"),
+}
+
 
 class RowOrigin(NamedTuple):
     """Statements of a platform about the sheet of an answer."""
@@ -49,7 +58,7 @@ class AnswerRow(NamedTuple):
 
 
 #: English place of an answer in a file. A file of a million rows states one in each: as a message each would cost more.
-_PLACE = re.compile(r"(?P<file>.*), (?P<unit>line|row|item) (?P<number>\d+)", re.DOTALL)
+_PLACE = re.compile(r"(?P<file>.*?), (?P<unit>line|row|item) (?P<number>\d+)(?P<rest>(?:, .*)?)", re.DOTALL)
 _UNITS = {"line": "{file}, line {line}", "row": "{file}, row {line}", "item": "{file}, item {line}"}
 
 
@@ -67,7 +76,8 @@ class Rejected:
         found = None if isinstance(self.source, Message) else _PLACE.fullmatch(self.source)
         if found is None:
             return self.source
-        return Message(_UNITS[found["unit"]], file=found["file"], line=found["number"])
+        place = Message(_UNITS[found["unit"]], file=found["file"], line=found["number"])
+        return Message("{place}{rest}", place=place, rest=found["rest"]) if found["rest"] else place
 
 
 def path_text(path: Path) -> str:

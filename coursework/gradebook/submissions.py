@@ -21,6 +21,7 @@ from coursework.gradebook.notebooks import read_notebook
 from coursework.gradebook.platform_files import NO_ANSWERS, fault_of, read_records, read_table, reader_of
 from coursework.gradebook.qti_results import read_results
 from coursework.gradebook.rows import (
+    TITLES,
     AnswerRow,
     PlatformFile,
     Rejected,
@@ -229,8 +230,8 @@ def _read_csv(data: bytes, source: str) -> Iterator[AnswerRow | Rejected | Platf
             titles = ", ".join(c for c in header if c) or "nothing"
             wanted = Message(
                 "the header must name {columns}; {missing} missing, found {found}",
-                columns=_listed(_TITLES.values()),
-                missing=_listed(_TITLES[c] for c in missing),
+                columns=_listed(TITLES.values()),
+                missing=_listed(TITLES[c] for c in missing),
                 found=titles,
             )
             yield Rejected(location, fault_of(cells) or wanted)
@@ -243,16 +244,6 @@ def _read_csv(data: bytes, source: str) -> Iterator[AnswerRow | Rejected | Platf
         yield Rejected(source, NO_ANSWERS)
 
 
-#: Titles of the columns of answers, which a file may have in any language.
-_TITLES = dict(
-    zip(
-        COLUMNS,
-        (Message("student"), Message("exercise"), Message("seed"), Message("part"), Message("answer")),
-        strict=True,
-    )
-)
-
-
 def _listed(titles: Iterable[Message]) -> Message:
     return reduce(lambda first, second: Message("{first}, {second}", first=first, second=second), titles)
 
@@ -260,9 +251,7 @@ def _listed(titles: Iterable[Message]) -> Message:
 @cache
 def _columns_by_title() -> dict[str, str]:
     """Return the columns of answers by their titles in all languages."""
-    return {
-        plain(localised(title, lang)): column for column, title in _TITLES.items() for lang in languages()
-    }
+    return {plain(localised(title, lang)): column for column, title in TITLES.items() for lang in languages()}
 
 
 def _columns_called(cells: Sequence[str]) -> list[str]:

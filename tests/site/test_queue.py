@@ -190,6 +190,28 @@ def test_a_rejected_row_is_placed_by_hand_and_the_original_is_kept(desk):
     assert [(one.waits, one.row.row["seed"]) for one in now.rejected] == [(False, "7")]
 
 
+def test_all_rows_of_a_stranger_are_placed_at_once_and_told_in_french(desk):
+    desk.hand_in({"Di": {"omega4": "1"}})
+    rows = [
+        {"student": "Dii", "exercise": EXERCISE, "part": part, "answer": text}
+        for part, text in {"rA": "319.8 mm", "theta4": "9", "omega4": "2", "x": "3"}.items()
+    ]
+    lost = [Rejected(f"late.csv, line 2, 1.{k} x", "no student", row) for k, row in enumerate(rows)]
+    desk.hand_in({}, *lost, Rejected("late.csv, line 3", "no student", {**rows[0], "student": "Who"}))
+    page = desk.page(TEACHER, "/files", lang="fr")
+    assert "« Dii » n’est personne" in page.text.replace("\u202f", " ").replace("\xa0", " ")
+    assert "late.csv, ligne 2, 1.0 x · étudiant <code>Dii</code> · exercice" in page.text
+    row = re.search(r'name="row" value="([^"]*)"', page.text)[1]
+    asked = {"row": row, "do": "place all", "student": ""}
+    desk.browser(TEACHER).fill(f"/desk/{desk.number}/rejected", asked)
+    assert len([one for one in class_now(desk.site, desk.number).rejected if one.waits]) == 5
+    reply = desk.browser(TEACHER).fill(f"/desk/{desk.number}/rejected", asked | {"student": "Di"})
+    assert "Di: rows placed 2, rows that wait on 2." in reply.text
+    assert marks(desk)["Di"].answer == "319.8 mm"
+    left = [one.row.row["part"] for one in class_now(desk.site, desk.number).rejected if one.waits]
+    assert sorted(left) == ["omega4", "rA", "x"]
+
+
 def test_a_row_that_is_placed_by_hand_is_of_the_very_hand_in(desk):
     with desk.site.store.begin() as connection:
         person = people_of(connection, desk.number)["Di"]

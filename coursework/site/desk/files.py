@@ -12,7 +12,7 @@ from typing import Any
 from starlette.responses import Response
 
 from coursework.database.assignments import issued_content, put_issued
-from coursework.database.class_state import ClassState
+from coursework.database.class_state import ClassState, UnplacedRow
 from coursework.database.instructor_queries import decided_since
 from coursework.database.marking import mark_submission
 from coursework.database.permissions import Permission
@@ -75,8 +75,17 @@ def files_page(
     ]
     return class_page_of(
         request, now, "site/instructor/files", "files", told=list(messages), files=files[::-1][:50], rejected=now.rejected,
-        platforms=PLATFORMS.values(), scores=SCORES, downloads=list(_tables(request, now)), filled=_filled(request, filled, name),
+        platforms=PLATFORMS.values(), scores=SCORES, downloads=list(_tables(request, now)), filled=_filled(request, filled, name), strangers=_strangers(now),
     )  # fmt: skip
+
+
+def _strangers(now: ClassState) -> list[list[UnplacedRow]]:
+    """Return the waiting rows of each name that nobody of the class has and that several rows state."""
+    by_name: dict[str, list[UnplacedRow]] = {}
+    for row in now.rejected:
+        if row.waits and row.stranger:
+            by_name.setdefault(row.stranger, []).append(row)
+    return [rows for rows in by_name.values() if len(rows) > 1]
 
 
 def answers_in(request: Request) -> Response:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from starlette.responses import Response
 
 from coursework.database.class_state import ClassState, UnplacedRow
@@ -26,7 +28,11 @@ def rejected(request: Request) -> Response:
     if row is None:
         raise HTTPException("own", 404)
     try:
-        message = _decided(request, now, row)
+        message = (
+            _placed_all(request, now, row)
+            if request.form.text("do") == "place all"
+            else _decided(request, now, row)
+        )
     except BadInput as fault:
         message = str(fault)
     if request.form.text("from") == "queue":
@@ -57,34 +63,60 @@ def _decided(request: Request, now: ClassState, row: UnplacedRow) -> str:
         return str(texts["aside_done"])
     if asked_for != "place":
         raise HTTPException("bad_request", 400)
-    answer = _answer(request, now, row)
-    source = f"{row.row.source} ({texts['by_hand'].format(request.actor.name)})"
-    with request.site.store.begin() as connection:
-        submission = insert_submission(
-            connection,
-            now.about.id,
-            [answer._replace(source=source)],
-            source=source,
-            received_at=request.received_at,
-            in_place=True,
-        )
-        put_placing(
-            connection,
-            now.about.id,
-            Placing(row.id, submission.id, reason, request.actor.name, request.received_at),
-        )
-        request.note(connection, "row placed", assignment=now.about.id, row=row.id)
-    mark_submission(request.site.course, request.site.store, submission.id)
+    answer = _answer(request, now, row, request.form.text("question"))
+    _place(request, now, [(row, answer)], reason)
     return str(texts["placed_done"]).format(
         now.shown(answer.student), now.number(answer.exercise, answer.part)
     )
 
 
-def _answer(request: Request, now: ClassState, row: UnplacedRow) -> AnswerRow:
+def _placed_all(request: Request, now: ClassState, first: UnplacedRow) -> str:
+    """Place all waiting rows that name the same stranger as this one; return the message. A row without a question of the
+    assignment, or to whose question an answer is marked, waits on."""
+    texts, left = request.words["files"], 0
+    answers: list[tuple[UnplacedRow, AnswerRow]] = []
+    if not now.issued.student(request.form.text("student")):
+        raise BadInput(texts["place_whose"])
+    for row in now.rejected:
+        if row.waits and row.stranger and row.stranger == first.stranger:
+            try:
+                question = f"{row.row.row.get('exercise', '')}/{row.row.row.get('part', '')}"
+                answers.append((row, _answer(request, now, row, question)))
+            except BadInput:
+                left += 1
+    if answers:
+        _place(request, now, answers, "")
+    shown = now.shown(str(now.issued.student(request.form.text("student"))))
+    return str(texts["placed_all"]).format(shown, len(answers), left)
+
+
+def _place(
+    request: Request, now: ClassState, answers: Sequence[tuple[UnplacedRow, AnswerRow]], reason: str
+) -> None:
+    """Store the answers that are made of rejected rows as one submission, and mark it."""
+    by_hand = request.words["files"]["by_hand"].format(request.actor.name)
+    sources = [f"{row.row.source} ({by_hand})" for row, _ in answers]
+    with request.site.store.begin() as connection:
+        submission = insert_submission(
+            connection,
+            now.about.id,
+            [answer._replace(source=source) for (_, answer), source in zip(answers, sources, strict=True)],
+            source=sources[0],
+            received_at=request.received_at,
+            in_place=True,
+        )
+        for row, _ in answers:
+            placing = Placing(row.id, submission.id, reason, request.actor.name, request.received_at)
+            put_placing(connection, now.about.id, placing)
+            request.note(connection, "row placed", assignment=now.about.id, row=row.id)
+    mark_submission(request.site.course, request.site.store, submission.id)
+
+
+def _answer(request: Request, now: ClassState, row: UnplacedRow, question: str) -> AnswerRow:
     """Return the answer that a person assigns to a rejected row."""
     texts, issued = request.words["files"], now.issued
     student = issued.student(request.form.text("student"))
-    exercise, _, part = request.form.text("question").partition("/")
+    exercise, _, part = question.partition("/")
     if not student or (exercise, part) not in now.questions:
         raise BadInput(texts["place_whose"])
     text = row.row.row.get("answer", "")
