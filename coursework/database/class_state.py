@@ -70,7 +70,7 @@ class UnplacedRow:
 
     @property
     def cells(self) -> list[tuple[str, str]]:
-        """What it states, with the titles in the language of the current messages."""
+        """Values that it states, with their titles in the language of the current messages."""
         return [(localised(TITLES.get(name, name)), value) for name, value in self.row.row.items() if value]
 
     @property
