@@ -307,7 +307,6 @@ unevenness = "2 %"
 SETTINGS = b"""[service]
 url = "https://tool.example.org"
 session_hours = 3
-assignments = []
 [[platforms]]
 name = "Moodle"
 issuer = "https://moodle.example.org"

@@ -26,7 +26,6 @@ from coursework.cli.options import (
 )
 from coursework.cli.printing import warn
 from coursework.errors import BadInput, unknown
-from coursework.messages import Message
 from coursework.system.extras import libraries
 from coursework.system.limits import MOST_PORT, MOST_VARIANTS, MOST_WORKERS
 
@@ -166,16 +165,6 @@ def _check_lti(folder: Path, url: str) -> None:
             "note: no platform in {folder}: 'coursework lti platform moodle https://… --in {folder}' adds one",
             folder=folder,
         )
-    if (old := folder / "lti.sqlite").exists():
-        note = Message(
-            (
-                "{file} is of an earlier version and no longer read, and some answers to links of exercises are only "
-                "there. Export them with that version, as answers.csv and issued.json on the class page of each link,"
-                " for 'coursework grade'; then delete the file"
-            ),
-            file=old,
-        )
-        print_notes([note])
     if not (key_folder := KeyFolder(folder / "keys")).keys:
         print_notes([f"a key was made: {key_folder.new().kid}"])
 

@@ -23,7 +23,7 @@ from coursework.errors import BadInput
 def progress(context: click.Context, folder: Path, day: datetime | None, lang: str, as_json: bool) -> None:
     """Show the progress in the self-study notebooks of a folder, and what comes next.
 
-    FOLDER contains their progress.json; by default it is the current one. The record of earlier versions counts too.
+    FOLDER contains their progress.json; by default it is the current one.
     """
     from dataclasses import asdict
 
@@ -31,15 +31,13 @@ def progress(context: click.Context, folder: Path, day: datetime | None, lang: s
     from coursework.markup.shown import NotebookDisplay
     from coursework.selfstudy import mastery
     from coursework.selfstudy.mastery import mark_what_came_unmarked, skills, standings
-    from coursework.selfstudy.progress import EARLIER, ExerciseStore, ProgressFile, now
+    from coursework.selfstudy.progress import ProgressFile, now
 
     course = opened(context)
     if not folder.is_dir():
         raise BadInput("no such folder: {folder}", folder=folder)
     on = now() if day is None else day.replace(tzinfo=UTC)
     file = ProgressFile(folder, lambda: on)
-    for path in sorted(folder.glob(f"*{EARLIER}")):
-        ExerciseStore(file, path.name.removesuffix(EARLIER))
     mark_what_came_unmarked(course, file)
     study_words = words(lang)["study"]
     if file.trouble:

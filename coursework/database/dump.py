@@ -16,7 +16,6 @@ from sqlalchemy import JSON, Boolean, Column, Connection, Double, Integer, Table
 from sqlalchemy.exc import DBAPIError
 
 from coursework.database.assignments import issued_of
-from coursework.database.promoting import promote_first
 from coursework.database.store import Store, json_of
 from coursework.database.submissions import rows_of
 from coursework.database.tables import METADATA, UTCDateTime, assignment
@@ -131,8 +130,6 @@ def restore(folder: Path, store: Store) -> dict[str, int]:
                     expected=counted.get(table.name, 0),
                 )
             _continue_numbering(connection, table)
-        if "area" not in counted:  # written before there were administrators
-            promote_first(connection)
         _check_readable(connection)
     return rows
 

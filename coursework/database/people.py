@@ -28,7 +28,7 @@ def people(connection: Connection) -> list[Any]:
 
 
 def person_by_id(connection: Connection, number: int) -> Any | None:
-    """Return ``id``, ``who``, ``name``, ``lang``, ``columns``, ``sessions_from``, ``role`` and ``login`` of a
+    """Return ``id``, ``who``, ``name``, ``lang``, ``columns``, ``role`` and ``login`` of a
     person; None if there is no such person."""
     return connection.execute(people_query().where(person.c.id == number)).first()
 

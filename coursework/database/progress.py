@@ -54,9 +54,6 @@ class PersonProgress:
         with self._store.reading() as connection:
             self.progress = self._read(connection)
 
-    def take_over(self, exercise: str) -> None:
-        """Do nothing: no earlier version stored progress in the database."""
-
     def add(self, entries: Iterable[Entry]) -> None:
         """Store entries, each once.
 

@@ -6,14 +6,10 @@ from __future__ import annotations
 from sqlalchemy import Column, Connection, Inspector, MetaData, String, Table, insert, inspect, select, update
 from sqlalchemy.schema import CreateColumn
 
-from coursework.database.promoting import promote_first
 from coursework.database.tables import METADATA
 
 VERSION = "0010"  #: raised when tables change in another way than by tables and columns that may be empty
 _VERSION_TABLE = Table("alembic_version", MetaData(), Column("version_num", String(32), primary_key=True))
-_ADMINISTRATORS = "0006"  #: first version with administrators
-#: Tables of earlier versions that repeated what the others contain.
-_DROPPED = ("answer_now", "student_total", "assignment_total", "unplaced", "outdated")
 
 
 def later_version(connection: Connection) -> str | None:
@@ -23,7 +19,7 @@ def later_version(connection: Connection) -> str | None:
 
 
 def complete_tables(connection: Connection) -> None:
-    """Create the missing tables, columns and indexes; drop tables that no version reads any more."""
+    """Create the missing tables, columns and indexes."""
     before = _version_of(connection)
     inspector = inspect(connection)
     stored = inspector.get_multi_columns()
@@ -39,15 +35,11 @@ def complete_tables(connection: Connection) -> None:
             _create_indexes(connection, inspector, table)
     if before == VERSION:
         return
-    for name in _DROPPED:
-        connection.exec_driver_sql(f"DROP TABLE IF EXISTS {name}")
     if before is None:
         _VERSION_TABLE.create(connection)
         connection.execute(insert(_VERSION_TABLE).values(version_num=VERSION))
-        return
-    connection.execute(update(_VERSION_TABLE).values(version_num=VERSION))
-    if before < _ADMINISTRATORS:
-        promote_first(connection)
+    else:
+        connection.execute(update(_VERSION_TABLE).values(version_num=VERSION))
 
 
 def _version_of(connection: Connection) -> str | None:

@@ -109,7 +109,6 @@ person = Table(
     Column("columns", Json, nullable=False, default=dict),  #: of the rosters that name them
     Column("extra_time", Double),  #: share by which working times are longer; none for none
     Column("created", UTCDateTime, nullable=False),
-    Column("sessions_from", UTCDateTime),  #: written by earlier versions, and read by none
 )
 
 #: Account with a password, stored as a hash of argon2.

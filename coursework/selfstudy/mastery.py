@@ -281,10 +281,7 @@ def marked_answers(
 
 
 def mark_what_came_unmarked(course: Course[Any], file: ProgressStore) -> None:
-    """Mark the stored answers without a verdict, with the date of the answer.
-
-    An earlier version stored them.
-    """
+    """Mark the stored answers without a verdict, with the date of the answer: a fault of the course left them so."""
     last = {(e["exercise"], e["seed"], e["part"]): e for e in file.progress if e["what"] == ANSWER}
     unmarked: dict[tuple[str, int], list[Entry]] = {}
     for (exercise, seed, _), item in last.items():

@@ -27,7 +27,6 @@ from __future__ import annotations
 
 import itertools
 import json
-import re
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from datetime import UTC, datetime, timedelta
 from functools import cached_property
@@ -161,7 +160,6 @@ def _identity(item: Entry) -> str:
 
 
 FILE = "progress.json"  #: of all the exercises of a folder
-EARLIER = ".study.json"  #: ending of the files of one exercise that earlier versions kept
 
 Clock = Callable[[], datetime]
 
@@ -187,15 +185,12 @@ class ProgressStore(Protocol):
     def add(self, entries: Iterable[Entry]) -> None:
         """Store new entries."""
 
-    def take_over(self, exercise: str) -> None:
-        """Import the entries of an exercise from an earlier version's file, if there is one."""
-
 
 class ProgressFile:
     """Progress file of a folder, read when opened and again before each write, so that two open notebooks
     lose nothing.
 
-    ``trouble`` says why nothing is written, or why an older file was set aside; it is empty when all is well, and ``troubled`` is the
+    ``trouble`` says why nothing is written, or why a file was set aside; it is empty when all is well, and ``troubled`` is the
     name of that file.
     """
 
@@ -214,9 +209,9 @@ class ProgressFile:
             return Progress()
         except LaterVersion:
             self._is_kept = False
-            self._report("later", self.path)
+            self._report("later")
         except (OSError, NotProgress, UnicodeDecodeError):
-            self.set_aside("damaged", self.path)
+            self._set_aside()
         return Progress()
 
     def refresh(self) -> None:
@@ -224,18 +219,18 @@ class ProgressFile:
         if self._is_kept:
             self.progress = self._read() | self.progress
 
-    def set_aside(self, why: str, path: Path) -> None:
+    def _set_aside(self) -> None:
         """Rename a damaged file to an unused name."""
-        names = (path.with_suffix(f".damaged{n or ''}.json") for n in itertools.count())
-        self._report(why, path)
+        names = (self.path.with_suffix(f".damaged{n or ''}.json") for n in itertools.count())
+        self._report("damaged")
         try:
-            path.replace(next(name for name in names if not name.exists()))
+            self.path.replace(next(name for name in names if not name.exists()))
         except OSError:
-            self._is_kept = path != self.path
-            self._report("unwritable", path)
+            self._is_kept = False
+            self._report("unwritable")
 
-    def _report(self, why: str, path: Path) -> None:
-        self.trouble, self.troubled = why, path.name
+    def _report(self, why: str) -> None:
+        self.trouble, self.troubled = why, self.path.name
 
     def add(self, entries: Iterable[Entry]) -> None:
         """Store new entries."""
@@ -254,55 +249,17 @@ class ProgressFile:
                 part.replace(self.path)
         except OSError:
             self.progress |= new
-            self._report("unwritable", self.path)
-
-    def take_over(self, exercise: str) -> None:
-        """Import ``EXERCISE.study.json``, the file of an earlier version beside this one, unless entries of
-        the exercise exist.
-
-        A file that cannot be read is set aside.
-        """
-        path = self.path.parent / f"{exercise}{EARLIER}"
-        if not path.exists():
-            return
-        existing = {(e["seed"], e["part"], e["what"]) for e in self.progress.of(exercise)}
-        result = self._of_earlier(path, exercise)
-        self.add(e for e in result if (e["seed"], e["part"], e["what"]) not in existing)
-
-    def _of_earlier(self, path: Path, exercise: str) -> list[dict[str, Any]]:
-        try:
-            content = json_of(path.read_bytes(), str(path))
-            variants = {
-                _seed(seed): {kind: dict(texts) for kind, texts in kinds.items()}
-                for seed, kinds in content["variants"].items()
-            }
-        except (OSError, ValueError, TypeError, KeyError, AttributeError, RecursionError):
-            self.set_aside("damaged", path)
-            return []
-        if content.get("exercise", exercise) != exercise:
-            self.set_aside("other", path)
-            return []
-        at = datetime.fromtimestamp(path.stat().st_mtime, UTC)
-        return [
-            entry(at, exercise, seed, str(name), _KINDS[kind], answer=text)
-            for seed, kinds in variants.items()
-            for kind, texts in kinds.items()
-            if kind in _KINDS
-            for name, text in texts.items()
-            if not is_blank(text)
-        ]
+            self._report("unwritable")
 
 
 class ExerciseStore:
     """Stored data of one exercise: answers and predictions by seed, and all events.
 
-    A blank never replaces an earlier answer. The file of an earlier version is imported once, with its date,
-    and left unchanged.
+    A blank never replaces an earlier answer.
     """
 
     def __init__(self, file: ProgressStore, exercise: str):
         self.exercise, self.file = exercise, file
-        self.file.take_over(exercise)
 
     def beside(self, exercise: str) -> ExerciseStore:
         """Return the stored data of another exercise in the same file."""
@@ -342,13 +299,6 @@ class ExerciseStore:
         before = self.happened(seed)
         at = max([self.file.clock(), *(date_of(e) + timedelta(microseconds=1) for e in before[-1:])])
         self.file.add([entry(at, self.exercise, seed, **each) for each in happened])
-
-
-def _seed(text: str) -> int:
-    """Parse a seed; refuse any other spelling."""
-    if not re.fullmatch(r"0|[1-9][0-9]{0,99}", text):
-        raise ValueError(text)
-    return int(text)
 
 
 def is_blank(text: Any) -> bool:

@@ -24,7 +24,6 @@ def test_a_new_database_has_exactly_the_tables(store):
 
 
 def test_a_database_of_an_earlier_version_gets_what_it_lacks_and_keeps_its_rows(store, url):
-    """Tables, columns and indexes that came later are added; the copies of marks that nobody reads go."""
     with store.begin() as connection:
         connection.execute(insert(setting).values(name="colour", value="blue"))
         for statement in (
@@ -32,7 +31,6 @@ def test_a_database_of_an_earlier_version_gets_what_it_lacks_and_keeps_its_rows(
             "ALTER TABLE audit DROP COLUMN subject",
             "ALTER TABLE assignment DROP COLUMN secret",
             "DROP TABLE failure",
-            "CREATE TABLE student_total (id INTEGER PRIMARY KEY, student TEXT)",
             "UPDATE alembic_version SET version_num = '0003'",
         ):
             connection.exec_driver_sql(statement)

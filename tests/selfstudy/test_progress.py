@@ -169,28 +169,6 @@ def test_the_file_of_a_later_version_is_left_as_it_is(lang, here):
     assert (here / FILE).read_text("utf-8") == text
 
 
-def test_files_of_an_earlier_version_are_taken_over_without_loss(here):
-    old = here / "slotted_mechanism.study.json"
-    right = COURSE["slotted_mechanism"].variant(3).solution()
-    kept = {
-        "3": {"answers": {"rA": f"{right['rA']:.5g}", "zz": "9"}, "predictions": {"theta4": "1"}},
-        "8": {"answers": {"omega4": "2"}},
-    }
-    old.write_text(json.dumps({"exercise": "slotted_mechanism", "variants": kept}), "utf-8")
-    before = old.read_text("utf-8")
-    session = coursework.study("slotted_mechanism", seed=3, lang="en")
-    assert session.answers == {"rA": kept["3"]["answers"]["rA"]}
-    assert session.predictions == {"theta4": "1"}
-    session.progress()  # now they are marked, with their own date
-    told = Progress.read((here / FILE).read_text("utf-8"))
-    assert {(e["seed"], e["part"]) for e in told} == {(3, "rA"), (3, "zz"), (3, "theta4"), (8, "omega4")}
-    assert {(o.part, o.is_clean) for o in outings(told)} == {("rA", True), ("omega4", False)}
-    session.check({"rA": "5"})
-    again = coursework.study("slotted_mechanism", seed=3)
-    assert again.answers == {"rA": "5"}  # what is newer is not covered by what is taken over again
-    assert old.read_text("utf-8") == before
-
-
 # ---------------------------------------------------------------------- spacing
 
 

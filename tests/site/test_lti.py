@@ -14,7 +14,6 @@ from site_people import MAX, ZOE
 from site_people import TEACHER as ADA
 from sqlalchemy import func, select, update
 
-from coursework.cli.site import _check_lti
 from coursework.database.assignments import issued_of
 from coursework.database.audit import noted
 from coursework.database.decisions import GIVEN, decide
@@ -22,7 +21,6 @@ from coursework.database.publication import CHARGE, NEVER
 from coursework.database.tables import account, delivery, drawing, identity, person
 from coursework.errors import BadInput
 from coursework.gradebook.decisions import Decision
-from coursework.messages import messages_in
 from coursework.site.lti.service import settings_of
 
 
@@ -380,16 +378,6 @@ def test_a_folder_for_another_address_is_refused(tmp_path):
         settings_of(tmp_path, "https://new.example.org")
     (tmp_path / "platforms.toml").write_text('[service]\nurl = "https://new.example.org/lti"\n', "utf-8")
     assert settings_of(tmp_path, "https://new.example.org").url == "https://new.example.org/lti"
-
-
-def test_a_file_of_an_earlier_version_is_named_with_what_to_do(tmp_path, capsys):
-    (tmp_path / "lti.sqlite").touch()
-    for lang, told in (("en", "no longer read"), ("fr", "plus rien ne le lit")):
-        with messages_in(lang):
-            _check_lti(tmp_path, "https://new.example.org")
-        said = capsys.readouterr().err
-        assert told in said
-        assert "answers.csv" in said
 
 
 def test_a_paper_in_a_frame_has_a_surface_whose_drawing_is_kept_with_what_is_handed_in(linked):

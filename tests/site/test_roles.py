@@ -2,17 +2,15 @@
 
 import html
 import re
-from datetime import UTC, datetime
 from pathlib import Path
 
 import pytest
 from site_people import HOME, MAX, TEACHER, ZOE, Class
-from sqlalchemy import insert, select, update
+from sqlalchemy import select, update
 
 from coursework.database.audit import Actor, note
 from coursework.database.people import put_account, put_person
 from coursework.database.permissions import PERMISSIONS, ROLES, Permission
-from coursework.database.store import Store
 from coursework.database.tables import account, audit, person
 
 PASSWORD = "a lamp by the window"
@@ -167,34 +165,3 @@ def test_the_documentation_says_who_may_what():
     for name, cells in re.findall(r"^\| `([a-z_.]+)`: [^|]+\|(.*)\|$", page, re.MULTILINE):
         told[name] = {role for role, cell in zip(ROLES, cells.split("|"), strict=True) if cell.strip()}
     assert told == {str(one): {role for role in ROLES if one in PERMISSIONS[role]} for one in Permission}
-
-
-def test_the_first_instructor_of_an_older_database_becomes_administrator(tmp_path):
-    """And the owner of one's own machine; an instructor without a password does not come before one who has chosen one."""
-    store = Store(f"sqlite:///{tmp_path}/old.db")
-    rows = [
-        ("owner", "instructor", "", None),
-        ("left@example.org", "instructor", "x", datetime(2026, 1, 1, tzinfo=UTC)),
-        ("invited@example.org", "instructor", "", None),
-        ("first@example.org", "instructor", "x", None),
-        ("second@example.org", "instructor", "x", None),
-        ("student@example.org", "student", "x", None),
-    ]
-    with store.begin() as connection:
-        for k, (login, role, secret, closed) in enumerate(rows, 1):
-            number = put_person(connection, identifier=login, name=login, lang="", columns={})
-            told = {"person_id": number, "login": login, "role": role, "secret": secret, "closed": closed}
-            connection.execute(insert(account).values(id=k, created=datetime.now(UTC), **told))
-        connection.exec_driver_sql("DROP TABLE area")
-        connection.exec_driver_sql("UPDATE alembic_version SET version_num = '0005'")
-    store.close()
-    again = Store(f"sqlite:///{tmp_path}/old.db")
-    with again.reading() as connection:
-        rows = connection.execute(select(account.c.login, account.c.role)).all()
-        roles = {row.login: row.role for row in rows}
-    again.close()
-    assert {login for login, role in roles.items() if role == "administrator"} == {
-        "owner",
-        "first@example.org",
-    }
-    assert sorted(roles.values()).count("instructor") == 3

@@ -151,11 +151,7 @@ _KEYS = (
     "audience",
     "emails_verified",
 )
-_SERVICE = (
-    "url",
-    "assignments",
-    "session_hours",
-)  #: ``assignments``, of earlier versions, says nothing any more
+_SERVICE = ("url", "session_hours")
 
 
 def read_settings(folder: Path) -> Settings:

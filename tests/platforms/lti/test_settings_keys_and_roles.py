@@ -67,10 +67,8 @@ def test_who_may_what():
 
 def test_settings_are_read_as_they_were_written(tmp_path):
     told = with_platform(Settings(tmp_path, "https://tool.example.org", (), 7200.0), PLATFORM)
-    text = as_toml(told)
-    for older in ("", 'assignments = ["week3.toml"]\n'):  # of a version that served files of assignments
-        (tmp_path / "platforms.toml").write_text(text.replace("[service]\n", f"[service]\n{older}"), "utf-8")
-        assert read_settings(tmp_path) == told
+    (tmp_path / "platforms.toml").write_text(as_toml(told), "utf-8")
+    assert read_settings(tmp_path) == told
 
 
 def test_a_platform_that_is_told_again_takes_its_own_place():
