@@ -6,7 +6,6 @@ import os
 import signal
 import subprocess
 import sys
-import time
 from pathlib import Path
 
 import coursework
@@ -52,14 +51,6 @@ def at_work(session):
             if own == str(session) and state not in "ZX":
                 found.append(int(entry.name))
     return found
-
-
-def until(is_so):
-    """Wait until it is; whether it is."""
-    last = time.monotonic() + LONGEST
-    while not is_so() and time.monotonic() < last:
-        time.sleep(0.02)
-    return is_so()
 
 
 def left_in(*folders):

@@ -36,7 +36,7 @@ class Arithmetic:
         """Evaluate a function of followed or plain numbers; truth values come out plain, numbers followed."""
         if name not in self.functions:
             raise NotFollowed(f"np.{name} is not followed")
-        plain = [_plain(v) for v in values]
+        plain = [v.value if isinstance(v, Followed) else v for v in values]
         if self.tape is not None and name in _MARGINS:
             kind, margin = _MARGINS[name]
             self.tape(kind, margin(self.functions, *plain))
@@ -68,10 +68,6 @@ _MARGINS: dict[str, tuple[str, Callable[..., Any]]] = {
     "arcsin": (ARC, lambda f, a: (1 - a) * (1 + a)),
     "arccos": (ARC, lambda f, a: (1 - a) * (1 + a)),
 }
-
-
-def _plain(value: Any) -> Any:
-    return value.value if isinstance(value, Followed) else value
 
 
 def _is_truth(value: Any) -> bool:

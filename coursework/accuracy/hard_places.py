@@ -42,7 +42,9 @@ _MOST = 8  #: places of an exercise
 
 _SAMPLE = 400  #: random places on which margins are compared
 _LOOPS = "loops"
-_LOOP = 64  #: margins of one quantity, beyond which it follows a motion: of each kind the smallest counts
+_MOST_NOTED = (
+    64  #: margins of one quantity, beyond which it follows a motion: of each kind the smallest counts
+)
 
 _Key: TypeAlias = tuple[str, str, int]  #: quantity, kind, and which of them
 Margins = dict[_Key, np.ndarray]
@@ -274,7 +276,7 @@ class Terrain:
         def observe(name: str, value: Any) -> Any:
             noted = [(kind, np.asarray(margin)) for kind, margin in self._notes]
             noted = [(kind, values) for kind, values in noted if values.dtype.kind in "fc"]
-            if len(noted) > _LOOP:
+            if len(noted) > _MOST_NOTED:
                 kinds = dict.fromkeys(kind for kind, _ in noted)
                 noted = [(k, reduce(np.fmin, (abs(v) for kind, v in noted if kind == k))) for k in kinds]
             for i, (kind, values) in enumerate(noted):

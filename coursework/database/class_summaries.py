@@ -55,14 +55,6 @@ def stored_counts(connection: Connection, states: Mapping[int, str]) -> dict[int
     return {row[0]: ClassCounts(*row[1:]) for row in connection.execute(query.where(*current))}
 
 
-def stored_table(connection: Connection, number: int, state: str) -> tuple[ClassCounts, str] | None:
-    """Return the stored counts and table of an assignment in exactly this state; None if there are none."""
-    columns = class_summary.c
-    query = select(columns.students, columns.handed_in, columns.waiting, columns.content)
-    row = connection.execute(query.where(columns.assignment_id == number, columns.state == state)).first()
-    return None if row is None else (ClassCounts(*row[:3]), row.content)
-
-
 def stored_tables(connection: Connection, states: Mapping[int, str]) -> dict[int, tuple[ClassCounts, str]]:
     """Return the stored counts and tables of the assignments whose summary is of exactly their state."""
     columns = class_summary.c

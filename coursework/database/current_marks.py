@@ -11,7 +11,7 @@ from coursework.course.course import Course
 from coursework.database.assignments import issued_of
 from coursework.database.decisions import read_decisions
 from coursework.database.tables import mark, marking
-from coursework.gradebook.adjustments import no_margins
+from coursework.gradebook.adjustments import Adjustments, no_margins
 from coursework.gradebook.decisions import TO_MARK
 from coursework.gradebook.graded_sheet import Graded
 from coursework.gradebook.placing import SheetKey
@@ -118,21 +118,18 @@ def _graded(issued: Issued, sheet: LastMarking, lines: _SheetMarks) -> Graded:
     return graded._replace(submitted=sheet.submitted, apart=sheet.apart)
 
 
-def graded(
+def adjusted_sheets(
     connection: Connection, assignment_id: int, student: str | None = None, course: Course | None = None
-) -> list[Graded]:
-    """Return the current sheets of a class, or of a student: the last marking with the decisions and adjustments applied,
-    wider margins where the ``course`` is given."""
+) -> tuple[Issued, Adjustments, list[Graded]]:
+    """Return what was issued to a class, or to a student, the adjustments, and the current sheets with the decisions and
+    adjustments applied; wider margins where the ``course`` is given."""
     sheets = last_markings(connection, assignment_id, student)
-    if not sheets:
-        return []
-    lines = lines_of(connection, sheets.values())
     decisions = read_decisions(connection, assignment_id, student)
     issued = issued_of(connection, assignment_id, student=student)
-    results = machine_marks(issued, sheets.values(), lines)
+    results = machine_marks(issued, sheets.values(), lines_of(connection, sheets.values()))
     sheets_now = [decisions.apply(result) for _, result in results if not isinstance(result, str)]
     margins = no_margins if course is None else margins_of(course, issued)
-    return decisions.adjustments.applied(sheets_now, issued, margins)
+    return issued, decisions.adjustments, decisions.adjustments.applied(sheets_now, issued, margins)
 
 
 def answers_waiting(connection: Connection, assignment_id: int) -> int:

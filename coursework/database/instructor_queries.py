@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import json
 import re
+from collections import Counter
 from collections.abc import Collection, Mapping
 from datetime import UTC, datetime
 from typing import Any, NamedTuple
@@ -13,6 +14,7 @@ from zlib import crc32
 from sqlalchemy import Column, Connection, Select, Text, cast, delete, func, insert, select
 
 from coursework.database.decisions import stored_decision
+from coursework.database.publication import Publication
 from coursework.database.tables import (
     answer,
     assignment,
@@ -26,6 +28,7 @@ from coursework.database.tables import (
     variant,
 )
 from coursework.gradebook.decisions import WITHDRAWN, Decision
+from coursework.issuing.assignment import text_in
 
 _BESIDE = 50  #: numbers before the last that may be seen after it
 
@@ -98,17 +101,26 @@ class AssignmentOverview(NamedTuple):
 
     id: int
     name: str
-    stated: Mapping[str, Any] | None
+    stated: Mapping[str, Any]
+    definition: Mapping[str, Any] | None
     published: Mapping[str, Any] | None
-    columns: str  #: of the roster, as JSON
     created: datetime
+    columns: str  #: of the roster, as JSON
     submissions: int
     last: datetime | None  #: time of the last submission
 
+    @property
+    def publication(self) -> Publication | None:
+        return None if self.published is None else Publication.of(self.published)
+
+    def title(self, lang: str) -> str:
+        """Return the title, or the name if it has none."""
+        return text_in(self.stated.get("title") or {}, lang) or self.name
+
 
 _LISTED = (
-    assignment.c.id, assignment.c.name, assignment.c.stated, assignment.c.published, assignment.c.created,
-    cast(assignment.c.columns, Text).label("roster"),
+    assignment.c.id, assignment.c.name, assignment.c.stated, assignment.c.asked, assignment.c.published,
+    assignment.c.created, cast(assignment.c.columns, Text).label("roster"),
 )  # fmt: skip
 
 
@@ -128,18 +140,19 @@ def listed_assignments(connection: Connection, assignment_id: int | None = None)
     )
     received_at = {row.id: row.came for row in connection.execute(last)}
     return [
-        AssignmentOverview(
-            row.id,
-            row.name,
-            row.stated,
-            row.published,
-            row.roster,
-            row.created,
-            row[-2],
-            received_at.get(row[-1]),
-        )
+        AssignmentOverview._make((*row[:2], row.stated or {}, *row[3:-1], received_at.get(row[-1])))
         for row in rows
     ]
+
+
+def people_counts(connection: Connection) -> tuple[Counter[int], Counter[int]]:
+    """Return the numbers of people with a paper, and of those who submitted something, by assignment."""
+    with_paper = select(variant.c.assignment_id, func.count(dealt.c.student.distinct())).join(dealt)
+    with_paper = with_paper.where(dealt.c.person_id.is_not(None)).group_by(variant.c.assignment_id)
+    submitted = select(delivery.c.assignment_id, func.count(delivery.c.person_id.distinct()))
+    queries = with_paper, submitted.group_by(delivery.c.assignment_id)
+    holders, authors = (Counter({row[0]: row[1] for row in connection.execute(q)}) for q in queries)
+    return holders, authors
 
 
 # --------------------------------------------------------------------- decisions

@@ -139,9 +139,3 @@ def jobs_before(connection: Connection, later: WorkerJob) -> int:
     """Return the number of jobs ahead of one."""
     query = select(func.count()).where(job.c.fault == "", job.c.id < later.id, _HANDED_IN)
     return int(connection.execute(query).scalar_one())
-
-
-def given_up_jobs(connection: Connection, assignment: int) -> list[WorkerJob]:
-    """Return the jobs of an assignment that failed too often."""
-    query = select(*_COLUMNS).where(job.c.assignment_id == assignment, job.c.fault != "").order_by(job.c.id)
-    return [WorkerJob(*row) for row in connection.execute(query)]

@@ -182,7 +182,7 @@ def _read_paper(
         elif not exercise:
             which = Message(
                 "the exercise of an answers cell is unknown: write {example} after its {{",
-                example=_example(sheets),
+                example="# " + " ".join(sheets[0]) if sheets else "# EXERCISE SEED",
             )
             yield Rejected(location, which, _about(identity, source) | {"answer": quoted(code)})
         else:
@@ -215,10 +215,6 @@ def _sheet_of(cell: dict[str, Any], sheets: list[tuple[str, str]]) -> tuple[str,
         if stated in sheets:
             return stated
     return sheets[0] if len(sheets) == 1 else ("", "")
-
-
-def _example(sheets: list[tuple[str, str]]) -> str:
-    return "# " + " ".join(sheets[0]) if sheets else "# EXERCISE SEED"
 
 
 def _name_in_paper(

@@ -14,6 +14,8 @@ from typing import NamedTuple
 
 from coursework.course.course import Course
 from coursework.course.key_batch import keys_of
+from coursework.course.marking_rules import Rules
+from coursework.course.variant import Variant
 from coursework.gradebook.adjustments import Margins
 from coursework.gradebook.class_marking import rules_of
 from coursework.gradebook.graded_sheet import Graded
@@ -73,20 +75,16 @@ _MEASURED = frozenset(("correct", "wrong", "missing_unit"))
 
 def measures(course: Course, issued: Issued, graded: Sequence[Graded]) -> Iterator[Measure]:
     """Yield the values by which the answers of each sheet are compared."""
-    variants = [course[graded_sheet.exercise].from_record(graded_sheet.record) for graded_sheet in graded]
-    for name in dict.fromkeys(graded_sheet.exercise for graded_sheet in graded):
-        keys_of(course[name], [v for v in variants if v.exercise.name == name], rules_of(course, issued))
-    for graded_sheet, variant in zip(graded, variants, strict=True):
+    for graded_sheet, variant in _with_variants(course, graded, rules_of(course, issued)):
         lines = {p: m for p, m in graded_sheet.lines.items() if m.verdict in _MEASURED}
         parts = [part for part in variant.parts if part.id in lines]
         margins = {part.id: half_widths_off(variant, part, lines[part.id].answer) for part in parts}
-        known_margins = {p: gap for p, gap in margins.items() if gap is not None}
         references = {
             part.id: repr(variant.key.reference.get(part.quantity))
             for part in parts
             if lines[part.id].verdict != "correct"
         }
-        yield Measure(known_margins, references)
+        yield Measure(_known(margins), references)
 
 
 def margins_of(course: Course, issued: Issued) -> Margins:
@@ -96,18 +94,30 @@ def margins_of(course: Course, issued: Issued) -> Margins:
         rules = rules_of(course, issued)
         if digits is not None:
             rules = replace(rules or course.folder.rules, digits=digits)
-        variants = [course[graded.exercise].from_record(graded.record) for graded in sheets]
-        for name in dict.fromkeys(graded.exercise for graded in sheets):
-            keys_of(course[name], [v for v in variants if v.exercise.name == name], rules)
-        for graded, variant in zip(sheets, variants, strict=True):
-            distances = {
-                part.id: half_widths_off(variant, part, graded.lines[part.id].answer)
-                for part in variant.parts
-                if part.id in graded.lines and graded.lines[part.id].points < graded.lines[part.id].out_of
-            }
-            yield {part: distance for part, distance in distances.items() if distance is not None}
+        for graded, variant in _with_variants(course, sheets, rules):
+            yield _known(
+                {
+                    part.id: half_widths_off(variant, part, graded.lines[part.id].answer)
+                    for part in variant.parts
+                    if part.id in graded.lines and graded.lines[part.id].points < graded.lines[part.id].out_of
+                }
+            )
 
     return margins
+
+
+def _with_variants(
+    course: Course, sheets: Sequence[Graded], rules: Rules | None
+) -> Iterator[tuple[Graded, Variant]]:
+    """Return sheets with their variants, whose keys are computed together."""
+    variants = [course[graded.exercise].from_record(graded.record) for graded in sheets]
+    for name in dict.fromkeys(graded.exercise for graded in sheets):
+        keys_of(course[name], [v for v in variants if v.exercise.name == name], rules)
+    return zip(sheets, variants, strict=True)
+
+
+def _known(margins: Mapping[str, float | None]) -> dict[str, float]:
+    return {part: margin for part, margin in margins.items() if margin is not None}
 
 
 def groups(

@@ -220,7 +220,7 @@ class SliderCrank:
         """Return the crank angle by which the longer of the two strokes exceeds half a turn, radians, signed
         as the offset.
 
-        The strokes take pi + this and pi - this: see :func:`time_ratio`.
+        The strokes take pi + this and pi - this: see :func:`time_ratio_excess`.
         """
         outer, inner = self._dead_centres()
         t = self._linkage
@@ -291,34 +291,14 @@ class SliderCrank:
         )
 
 
-def time_ratio(excess: Any) -> Any:
-    """Return the time ratio of the longer to the shorter stroke, which take pi + excess and pi - excess of
-    crank angle.
+def time_ratio_excess(excess: Any) -> Any:
+    """Return the time ratio of the longer to the shorter stroke minus 1, without loss of digits when the strokes are nearly equal.
 
     Parameters
     ----------
     excess
         Crank angle by which the longer stroke exceeds half a turn, radians, of either sign; a scalar or an
-        array.
-
-    Returns
-    -------
-    The ratio, at least 1, of the same shape.
-
-    Source
-    ------
-    ``(pi + |excess|) / (pi - |excess|)``.
-    """
-    return 1 + time_ratio_excess(excess)
-
-
-def time_ratio_excess(excess: Any) -> Any:
-    """Return the time ratio minus 1, without loss of digits when the strokes are nearly equal.
-
-    Parameters
-    ----------
-    excess
-        As in :func:`time_ratio`.
+        array. The strokes take pi + excess and pi - excess of crank angle.
 
     Returns
     -------
@@ -434,10 +414,6 @@ def _displacement(t: _SliderCrankLengths, swept: Sweep, cos: Any, sin: Any, angl
 def _outer(t: _SliderCrankLengths) -> Any:
     total = t.rod + t.crank
     return np.sqrt((total - t.offset) * (total + t.offset))
-
-
-def _pressure_angle(t: _SliderCrankLengths, swept: Sweep, cos: Any, sin: Any, _: Any) -> tuple[Any]:
-    return (np.arctan2(np.abs(t.offset - t.crank * sin), np.abs(_closing(t, swept).determinant)),)
 
 
 def _conditioning(t: _SliderCrankLengths, swept: Sweep, *_: Any) -> tuple[Any]:

@@ -408,13 +408,9 @@ class QuestionWriter:
         step = "advantage" if drives and not slides else "advantage_efforts"
         formulas.write("advantage", f"{scaled}{ends[0]} / {ends[1]}", unit, step, "m_a", words=words)
         self._ask("advantage", key, words, unit=f'"{unit}"')
-        wrong, name = (
-            (f"{ends[1]} / ({scaled}{ends[0]})" if scaled else f"{ends[1]} / {ends[0]}",),
-            "advantage_upside_down",
-        )
-        self.mistakes.append(
-            UsualMistake(name, ("advantage",), wrong, step.replace("advantage", name, 1), words, "inverse")
-        )
+        name, wrong = "advantage_upside_down", f"{ends[1]} / {_factor(scaled + ends[0])}"
+        sentence = step.replace("advantage", name, 1)
+        self.mistakes.append(UsualMistake(name, ("advantage",), (wrong,), sentence, words, "inverse"))
 
     def _drives(self, key: str, *kinds: str) -> None:
         """Refuse a question about another sort of driver."""

@@ -402,7 +402,7 @@ class PolygonWriter:
                             (f"if_long({start}, {own}, {code})",),
                             f"drawn_{kind}",
                             words,
-                            _kind(kind),
+                            "sign" if kind == "sense" else "mistake",
                         )
             if not sides[0].is_known:
                 yield from self._of_crossing(own, image, sides)
@@ -475,7 +475,3 @@ class PolygonWriter:
             f"    asked = DrawingParts(scale={self.scale!r}, points={dict(self.parts)!r}, lengths={{}}, reads={{}}, sides={sides!r})\n"
             f"    return verdicts(answers, {self.reference(given)}, asked)"
         )
-
-
-def _kind(kind: str) -> str:
-    return "sign" if kind == "sense" else "mistake"

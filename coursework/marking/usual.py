@@ -112,7 +112,7 @@ def _near(
         near = nearness(part, key, judged_by, answer, usual if is_own else min(usual, apart))
         is_written_so = not part.sort.turn and np.abs(given - answer) <= half_step(given, key.rules.digits)
         for index in np.flatnonzero((away <= near) | (is_written_so & np.isfinite(away))):
-            error, same = errors[close[index]], (reading_index, _rounded(float(given[index])))
+            error, same = errors[close[index]], (reading_index, float(f"{float(given[index]):.9g}"))
             if may_be(error):
                 is_here = error.source == judged_by.quantity or error.kind in TAKEN
                 first = hits.get(same, Fit(error, reading_index, float(away[index]), is_here, ()))
@@ -132,10 +132,6 @@ def nearness(part: Part, key: Key, judged_by: Part, answer: Any, usual: float) -
     its last digit allows."""
     width = key.half_width(judged_by)
     return min(1.0, max(usual, last_digit(part, answer) / width)) if width else usual
-
-
-def _rounded(value: float) -> float:
-    return float(f"{value:.9g}")
 
 
 def _close(part: Part, key: Key, judged_by: Part, values: np.ndarray, answer: float) -> np.ndarray:

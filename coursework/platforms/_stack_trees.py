@@ -149,7 +149,7 @@ def _tree(variant: Variant, part_number: int, posed: Posed, part: Part) -> Tree:
     if posed.kind == CHOICES:
         return Tree(part_number, posed, tuple(_several(part_number, posed)))
     earlier_answers = following(variant, part)
-    right, *wrong = _intervals(posed)
+    right, *wrong = (interval for interval in posed.intervals if not interval.turns)
     nodes = [_of_interval(part_number, right, part.sort.turn)]
     if earlier_answers is not None:
         nodes.append(_of_following(variant, part_number, part, earlier_answers))
@@ -167,10 +167,6 @@ def unit_of(part: Part) -> str:
         return in_base_units(part.unit)
     except Unprintable:
         return "co_unit"
-
-
-def _intervals(posed: Posed) -> Iterator[Interval]:
-    return (interval for interval in posed.intervals if not interval.turns)
 
 
 def _turns(interval: Interval, posed: Posed) -> bool:

@@ -279,11 +279,7 @@ def _box(boxes: Sequence[Mapping[str, Any]], join: Callable[[Sequence[str]], str
 
 def _worth(share: float, *, is_full: bool = True) -> str:
     """Return the share of an answer, ``=`` for the full share of a single one."""
-    return "=" if is_full and share == 1 else f"%{_percent(share)}%"
-
-
-def _percent(share: float) -> str:
-    return plain(round(100 * share, _PERCENT))
+    return "=" if is_full and share == 1 else f"%{plain(round(100 * share, _PERCENT))}%"
 
 
 _MARKS = str.maketrans({"&": "&amp;", "}": "&#125;", "#": "&#35;", "~": "&#126;"})

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from functools import cache
 from importlib.resources import files
-from types import ModuleType
 from typing import TypeAlias
 
 import numpy as np
@@ -79,12 +78,8 @@ def probabilities(seen: Floats) -> NDArray[np.float64]:
     return np.concatenate(batches) if batches else np.zeros((0, OTHER + 1))
 
 
-def _opencv() -> ModuleType:
-    return library("cv2", "Reading scans needs", "scan")
-
-
 def _resized(cell: NDArray[np.uint8]) -> Floats:
-    cv2 = _opencv()
+    cv2 = library("cv2", "Reading scans needs", "scan")
     smaller = cell.shape[0] >= HEIGHT
     how = cv2.INTER_AREA if smaller else cv2.INTER_LINEAR
     grey: Floats = cv2.resize(cell, (WIDTH, HEIGHT), interpolation=how).astype(np.float32)

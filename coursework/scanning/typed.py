@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import csv
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
@@ -81,10 +81,6 @@ def merged(before: Iterable[Typed], more: Iterable[Typed]) -> list[Typed]:
     """Return the earlier and the new typed texts, sorted by place; a new one replaces an earlier one."""
     by_position = {text.place: text for text in (*before, *more)}
     return [by_position[position] for position in sorted(by_position)]
-
-
-def by_place(typed: Iterable[Typed]) -> Mapping[tuple[str, str, str, str, str], Typed]:
-    return {text.place: text for text in typed}
 
 
 def typed_file(typed: Iterable[Typed]) -> bytes:

@@ -47,20 +47,6 @@ class Decomposition:
     def class_name(self) -> str:
         return roman(self.rank)
 
-    def group_of(self, body: int) -> AssourGroup | None:
-        """Return the group that holds a body.
-
-        Parameters
-        ----------
-        body
-            Number of the body.
-
-        Returns
-        -------
-        The group; None for the frame and the driver.
-        """
-        return next((group for group in self.groups if body in group.bodies), None)
-
 
 def roman(number: int) -> str:
     """Return a small number in Roman figures.

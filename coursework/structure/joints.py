@@ -6,7 +6,6 @@ a multiple pivot is written (one record of k bodies, or records of the same ``at
 
 from __future__ import annotations
 
-from collections import Counter, deque
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -130,31 +129,6 @@ class JointGraph:
         """Return the kinematic pairs, a multiple pivot as pairs with its lowest body."""
         return tuple(sorted((joint.bodies[0], other) for joint in self.joints for other in joint.bodies[1:]))
 
-    def cycles(self) -> tuple[tuple[int, ...], ...]:
-        """Return the independent cycles, ``counts.gamma`` of them, as the bodies in order.
-
-        Each closes by one pair that no other cycle uses. A cycle of two bodies is two pairs between them.
-        """
-        parents = self._parents
-        tree = Counter((min(edge), max(edge)) for edge in parents.items() if edge[1])
-        closing = Counter(self.pairs()) - tree
-        return tuple(_cycle(parents, *pair) for pair in sorted(closing.elements()))
-
-    @cached_property
-    def _parents(self) -> dict[int, int]:
-        """Neighbour of each body on a shortest path to the frame; 0 for the frame."""
-        neighbours: dict[int, set[int]] = {body: set() for body in self.bodies}
-        for first, other in self.pairs():
-            neighbours[first].add(other)
-            neighbours[other].add(first)
-        parents, waiting = {FRAME: 0}, deque([FRAME])
-        while waiting:
-            body = waiting.popleft()
-            for other in sorted(neighbours[body] - parents.keys()):
-                parents[other] = body
-                waiting.append(other)
-        return parents
-
 
 def copied(records: Iterable[Record]) -> tuple[dict[str, Any], ...]:
     """Return copies of joint records, which the caller may change.
@@ -169,22 +143,6 @@ def copied(records: Iterable[Record]) -> tuple[dict[str, Any], ...]:
     New mappings with new lists ``between``.
     """
     return tuple({**record, "between": list(record["between"])} for record in records)
-
-
-def _cycle(parents: Mapping[int, int], first: int, other: int) -> tuple[int, ...]:
-    """Return the cycle that a pair closes with the paths of its two bodies towards the frame."""
-    left, right = _path_to_frame(parents, first), _path_to_frame(parents, other)
-    while len(left) > 1 and len(right) > 1 and left[-2] == right[-2]:
-        left.pop()
-        right.pop()
-    return (*reversed(left), *right[:-1])
-
-
-def _path_to_frame(parents: Mapping[int, int], body: int) -> list[int]:
-    direction = [body]
-    while parents[direction[-1]]:
-        direction.append(parents[direction[-1]])
-    return direction
 
 
 def _joint(record: Any, number: int) -> PlaneJoint:

@@ -9,6 +9,7 @@ import signal
 import ending
 import pytest
 from class_of_three import table
+from site_server import until
 
 from coursework.authoring.scaffold import new_exercise
 from coursework.cli import run
@@ -62,11 +63,11 @@ JOBS = {
 def test_whatever_ends_a_command_no_process_of_it_stays(course, tmp_path, job, number):
     words = JOBS[job](course, tmp_path)
     process = ending.begun(tmp_path, "--course", course, *words)
-    assert ending.until(lambda: len(ending.at_work(process.pid)) >= 4 or process.poll() is not None)
+    assert until(lambda: len(ending.at_work(process.pid)) >= 4 or process.poll() is not None)
     assert process.poll() is None, process.communicate()
     process.send_signal(number)
     said = ending.ended(process)[1]
-    assert ending.until(lambda: not ending.at_work(process.pid))
+    assert until(lambda: not ending.at_work(process.pid))
     assert not [*(tmp_path / "tmp").iterdir()]
     if number != signal.SIGKILL:
         assert process.returncode == 128 + number

@@ -8,7 +8,7 @@ from stored_class import ANA, BEN, content, put, rows
 from tables import each_row
 
 import coursework
-from coursework.database.current_marks import graded
+from coursework.database.current_marks import adjusted_sheets
 from coursework.database.decisions import decide, history, read_decisions, store_new_decisions
 from coursework.database.marking import mark_new
 from coursework.database.tables import decision
@@ -38,7 +38,7 @@ def say(store, number, places, kind, points, reason, by="Prof. Roe"):
 
 def line(store, number, student=BEN, part="x"):
     with store.reading() as connection:
-        return graded(connection, number, student)[0].lines[part]
+        return adjusted_sheets(connection, number, student)[-1][0].lines[part]
 
 
 def test_an_accepted_answer_has_its_points_and_says_why(store, number):
@@ -90,7 +90,7 @@ def test_an_answer_that_nobody_gave_is_accepted_too(store, course):
     mark_new(course, store, number)
     say(store, number, [PLACE], "accepted", None, "handed in on paper")
     with store.reading() as connection:
-        (one,) = graded(connection, number, BEN)
+        (one,) = adjusted_sheets(connection, number, BEN)[-1]
     assert one.unanswered == ("x",)
     assert one.lines["x"].verdict == "accepted"
 

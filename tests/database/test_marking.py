@@ -14,7 +14,7 @@ from stored_class import ANA, BEN, CAME, CLEO, content, put, rows
 import coursework
 from coursework.database import marking as marking_module
 from coursework.database.assignments import put_issued
-from coursework.database.current_marks import graded
+from coursework.database.current_marks import adjusted_sheets
 from coursework.database.marking import Work, mark_new, mark_submission, would_change
 from coursework.database.states import ENGINE, exercise_state
 from coursework.database.submissions import insert_submission
@@ -62,7 +62,7 @@ def plain(course, told, some):
 
 def standing(store, number, student=None):
     with store.reading() as connection:
-        return graded(connection, number, student)
+        return adjusted_sheets(connection, number, student)[-1]
 
 
 def comparable(one):

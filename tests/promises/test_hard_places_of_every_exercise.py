@@ -7,13 +7,13 @@ what is unavoidable is the condition number times the last digit: an error may b
 from __future__ import annotations
 
 import pytest
+from approaches import misses, misses_near
 from sweeps import sampled, slow, whole_course
 
 import coursework
 from coursework.accuracy.hard_places import growing_places, hard_places
 from coursework.accuracy.reference import Reference
 from coursework.accuracy.subject import numbers_of
-from coursework.accuracy.sweep import misses, misses_near
 
 COURSE = coursework.open_course()
 NUMERIC = [name for name in COURSE.names if numbers_of(COURSE[name])]

@@ -84,8 +84,8 @@ def test_a_damaged_file_is_set_aside_and_told(lang, here):
     for number in ("", "1"):
         (here / FILE).write_text("[", "utf-8")
         session = coursework.study("coriolis", lang=lang)
-        told = start_of(SAID[lang]["trouble"]["damaged"].format(file=FILE))
-        assert told[:30] in str(session.progress())
+        told = {"en": "could not be read", "fr": "pas pu être lu"}[lang]
+        assert told in flat(session.progress())
         assert (here / f"progress.damaged{number}.json").read_text("utf-8") == "["
         session.check({"a_coriolis": "3"})
         (one,) = Progress.read((here / FILE).read_text("utf-8"))

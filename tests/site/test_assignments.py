@@ -12,7 +12,7 @@ from site_assignments import ASSIGNMENT, CLOSES, OPENS, USUAL, code_of, dealt, h
 from site_people import MAX, TEACHER, ZOE
 from tables import each_row
 
-from coursework.database.current_marks import graded
+from coursework.database.current_marks import adjusted_sheets
 from coursework.database.publication import (
     Extension,
     Publication,
@@ -40,7 +40,7 @@ def delivered(one, number, name=ZOE):
 
 def marks(one, number, name=ZOE):
     with one.site.store.reading() as connection:
-        return graded(connection, number, name)
+        return adjusted_sheets(connection, number, name)[-1]
 
 
 def seen(reply):

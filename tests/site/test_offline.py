@@ -8,21 +8,13 @@ import pytest
 from site_assignments import USUAL, dealt, handed_in
 from site_browser import chromium, context_of, served
 from site_people import MAX, TEACHER, ZOE, Class, signed_in
+from site_server import until
 from site_walk import Filled, filled, fillings
 
 from coursework.site.application import ROUTES
 from coursework.site.frame.cookies import COOKIE
 
 EXERCISE, LESSON = "slotted_mechanism", "mobility_and_groups"
-
-
-def _until(page, expression):
-    """Wait until an expression is true: the page's policy lets no script evaluate a text, so it is asked from outside."""
-    for _ in range(300):
-        if page.evaluate(expression):
-            return
-        page.wait_for_timeout(100)
-    raise AssertionError(f"never true: {expression}")
 
 
 @pytest.mark.e2e
@@ -81,7 +73,11 @@ def opened(place, name, path="/practice"):
     for _ in range(2):  # loaded before the worker was there, and with it
         page.goto(address + path)
         page.evaluate("navigator.serviceWorker.ready.then(() => 0)")
-    _until(page, "caches.keys().then((names) => names.some((name) => name.startsWith('pages ')))")
+    until(
+        lambda: page.evaluate(
+            "caches.keys().then((names) => names.some((name) => name.startsWith('pages ')))"
+        )
+    )
     return page
 
 
@@ -108,10 +104,12 @@ def test_a_seen_page_opens_without_a_network_and_what_is_typed_goes_when_it_is_b
     page.fill("#answer-a-rA", "77")
     page.fill("#answer-a-theta4", "88")
     page.wait_for_selector("[data-kept]:has-text('Saved')")
-    _until(page, "() => caches.match(location.pathname + '?saved').then(Boolean)")
+    until(lambda: page.evaluate("() => caches.match(location.pathname + '?saved').then(Boolean)"))
     page.context.set_offline(True)
     page.goto(address)
-    _until(page, "document.querySelector('#answer-a-theta4').value === '88'")  # saved after it was opened
+    until(
+        lambda: page.evaluate("document.querySelector('#answer-a-theta4').value === '88'")
+    )  # saved after it was opened
     page.fill("#answer-a-rA", "123")
     page.wait_for_selector("[data-kept]:has-text('No connection')")
     page.goto(address)
@@ -123,10 +121,8 @@ def test_a_seen_page_opens_without_a_network_and_what_is_typed_goes_when_it_is_b
     page.goto(address)
     assert page.input_value("#answer-a-rA") == "123"
     assert page.locator(".other-page:not(:empty)").count() == 0  # its own text is no other page's
-    until, path = time.monotonic() + 30, address.removeprefix(place[1])
-    while 'value="123"' not in place[0].browser(ZOE).get(path).text:  # another device has it
-        assert time.monotonic() < until
-        page.wait_for_timeout(200)
+    path = address.removeprefix(place[1])
+    until(lambda: 'value="123"' in place[0].browser(ZOE).get(path).text)  # another device has it
     page.context.close()
 
 
@@ -136,10 +132,7 @@ def test_a_lesson_opens_without_a_network_with_figures_that_nobody_has_looked_at
     page.locator(".lesson.stepped").wait_for()
     wanted = set(page.locator(".lesson img").evaluate_all("all => all.map((one) => one.src)"))
     held = "caches.open('figures').then((one) => one.keys()).then((keys) => keys.map((key) => key.url))"
-    until = time.monotonic() + 30
-    while not wanted <= set(page.evaluate(held)):
-        assert time.monotonic() < until
-        page.wait_for_timeout(200)
+    until(lambda: wanted <= set(page.evaluate(held)))
     page.context.set_offline(True)
     page.reload()
     page.locator("[data-go='1']").tap()

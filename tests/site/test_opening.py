@@ -14,7 +14,7 @@ from sqlalchemy import func, select, update
 
 from coursework.database.dump import dump
 from coursework.database.erasing import erase
-from coursework.database.jobs import MARK, PREPARE, given_up_jobs, take_job
+from coursework.database.jobs import MARK, PREPARE, take_job
 from coursework.database.prepared import drop_prepared
 from coursework.database.publication import student_assignments
 from coursework.database.tables import assignment, job, person, prepared
@@ -305,5 +305,4 @@ def test_a_page_that_cannot_be_made_stops_nobody_and_is_not_told_as_a_hand_in(se
     assert {row.person_id for row in rows(served)} >= {served.ids[MAX]}
     assert f"the page of person {served.ids[ZOE]} of assignment {number} failed" in caplog.text
     with served.site.store.reading() as connection:
-        assert given_up_jobs(connection, number) == []
         assert connection.execute(select(func.count()).select_from(job)).scalar() == 0

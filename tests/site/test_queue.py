@@ -7,7 +7,7 @@ from desk_class import EXERCISE, OTHER, SEED, DeskClass, Rejected, field, told
 from site_people import TEACHER, ZOE
 from tables import each_row
 
-from coursework.database.current_marks import graded
+from coursework.database.current_marks import adjusted_sheets
 from coursework.database.decisions import read_decisions
 from coursework.database.instructor_queries import people_of
 from coursework.database.submissions import insert_submission
@@ -34,7 +34,7 @@ def press(desk, name, page, do, **more):
 
 def marks(desk, part="rA"):
     with desk.site.store.reading() as connection:
-        return {one.student: one.lines[part] for one in graded(connection, desk.number)}
+        return {one.student: one.lines[part] for one in adjusted_sheets(connection, desk.number)[-1]}
 
 
 def waiting(desk):

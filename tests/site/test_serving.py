@@ -17,7 +17,7 @@ from site_server import Served, kill, lives, until
 
 from coursework import open_course
 from coursework.cli import run
-from coursework.database.current_marks import graded
+from coursework.database.current_marks import adjusted_sheets
 from coursework.database.pool import Pooled, pools, put_pooled
 from coursework.database.publication import Publication
 from coursework.database.store import Store
@@ -149,7 +149,7 @@ def test_what_is_handed_in_is_marked_by_the_process_beside(tmp_path):
 
     def marks():
         with one.site.store.reading() as connection:
-            return len(graded(connection, number, ZOE))
+            return len(adjusted_sheets(connection, number, ZOE)[-1])
 
     assert marks() == 0
     with Served(tmp_path, "serve", "--port", "0") as site:

@@ -6,6 +6,7 @@ import signal
 
 import ending
 import pytest
+from site_server import until
 
 pytestmark = [
     pytest.mark.skipif(not ending.HAS_SESSIONS, reason="processes of a session are counted on Linux"),
@@ -58,22 +59,22 @@ if __name__ == "__main__":
 @pytest.mark.parametrize("script", [WRITES, BESIDE], ids=["shared work", "work beside"])
 def test_a_process_that_is_killed_leaves_no_other(tmp_path, script):
     process = ending.begun(tmp_path, script=script)
-    assert ending.until((tmp_path / "mark").exists), process.stderr.read()
+    assert until((tmp_path / "mark").exists), process.stderr.read()
     assert len(ending.at_work(process.pid)) > 1
     process.kill()
-    assert ending.until(lambda: not ending.at_work(process.pid))
+    assert until(lambda: not ending.at_work(process.pid))
     process.communicate()
     assert not [*(tmp_path / "tmp").iterdir()]
 
 
 def test_a_process_that_is_told_to_end_puts_away_what_it_has_begun(tmp_path):
     process = ending.begun(tmp_path, script=WRITES)
-    assert ending.until((tmp_path / "mark").exists)
+    assert until((tmp_path / "mark").exists)
     process.terminate()
     _, said = ending.ended(process)
     assert process.returncode == 128 + signal.SIGTERM
     assert said.strip() == "coursework: ended by SIGTERM"
-    assert ending.until(lambda: not ending.at_work(process.pid))
+    assert until(lambda: not ending.at_work(process.pid))
     assert not (tmp_path / "out").exists()
     assert not [*(tmp_path / "tmp").iterdir()]
 
@@ -99,9 +100,9 @@ if __name__ == "__main__":
 
 def test_work_beside_that_does_not_end_when_told_is_ended(tmp_path):
     process = ending.begun(tmp_path, script=STUBBORN)
-    assert ending.until((tmp_path / "done").exists)
+    assert until((tmp_path / "done").exists)
     assert process.wait(ending.LONGEST) == 0
-    assert ending.until(lambda: not ending.at_work(process.pid))
+    assert until(lambda: not ending.at_work(process.pid))
     process.communicate()
 
 

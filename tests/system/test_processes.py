@@ -6,7 +6,8 @@ import signal
 import time
 
 import pytest
-from ending import at_work, begun, ended, until
+from ending import at_work, begun, ended
+from site_server import until
 from tables import each_row
 
 import coursework.system.processes as processes_module

@@ -33,15 +33,11 @@ def _grade_id(cell: NotebookNode) -> str:
     return name if isinstance(name, str) else ""
 
 
-def _is_ours(cell: NotebookNode) -> bool:
-    return _grade_id(cell).startswith(OURS)
-
-
 class KeepAnswers(ClearSolutions):
     """Step that clears solutions as nbgrader does, except in our cells: an answers cell holds no solution."""
 
     def preprocess_cell(self, cell: NotebookNode, resources: ResourcesDict, cell_index: int) -> Done:
-        if _is_ours(cell):
+        if _grade_id(cell).startswith(OURS):
             return cell, resources
         return super().preprocess_cell(cell, resources, cell_index)
 

@@ -31,7 +31,7 @@ from coursework.database.instructor_queries import (
     stamp,
     unmarked,
 )
-from coursework.database.permissions import group_key, groups_within
+from coursework.database.permissions import Permission, group_key, groups_within
 from coursework.database.publication import late_penalties
 from coursework.database.store import Store
 from coursework.database.submissions import rows_of
@@ -41,7 +41,6 @@ from coursework.gradebook.waiting import (
     Measure,
     measures,
 )
-from coursework.issuing.assignment import text_in
 from coursework.issuing.issued import Issued
 from coursework.site.frame.requests import HTTPException, Request
 from coursework.site.frame.settings import Site
@@ -203,6 +202,20 @@ def students_here(request: Request, number: int) -> frozenset[str] | None:
     return chosen if within is None else chosen & within
 
 
+def assignments_marked(
+    request: Request, connection: Connection
+) -> list[tuple[AssignmentOverview, frozenset[str] | None]]:
+    """Return the assignments in which the user marks somebody, the latest first, each with the students within whom they
+    may; None for the whole class."""
+    found = []
+    for about in listed_assignments(connection):
+        if request.user.may(Permission.MARKS_READ, about.id):
+            within = students_within(connection, request.user, about.id)
+            if within is None or within:
+                found.append((about, within))
+    return found
+
+
 def _groups_here(request: Request, number: int) -> dict[str, str]:
     """Return the groups that the user may choose, by their keys."""
     with request.site.store.reading() as connection:
@@ -216,11 +229,6 @@ def class_page_of(request: Request, now: Any, template: str, tab: str, **names: 
     by the pages that offer them."""
     group = group_key(request.query_params.get(CLASS_GROUP, ""))
     return request.render(
-        template, now=now, tab=tab, heading=assignment_title(now.about, request.lang), class_group=group,
+        template, now=now, tab=tab, heading=now.about.title(request.lang), class_group=group,
         class_groups=cache(partial(_groups_here, request, now.about.id)), group_query=urlencode({CLASS_GROUP: group}) if group else "", **names,
     )  # fmt: skip
-
-
-def assignment_title(about: AssignmentOverview, lang: str) -> str:
-    """Return the title of an assignment, or its name if it has none."""
-    return text_in((about.stated or {}).get("title") or {}, lang) or about.name

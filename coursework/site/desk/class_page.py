@@ -53,7 +53,7 @@ def news(request: Request) -> Response:
     with request.site.store.reading() as connection:
         changed = students_since(connection, now.about.id, before)
     # A step on no single student may change every row; rows under codes are not told by names.
-    if "" in changed or (now.about.stated or {}).get("anonymous"):
+    if "" in changed or now.about.stated.get("anonymous"):
         return redirect(f"/desk/{now.about.id}")
     return request.render(
         "site/instructor/_news", now=now, rows=[row for row in table_rows if row.student in changed], all_rows=len(table_rows),

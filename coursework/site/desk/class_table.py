@@ -15,7 +15,6 @@ from coursework.database.class_state import ClassState
 from coursework.database.class_summaries import (
     ClassCounts,
     put_summary,
-    stored_table,
     stored_tables,
     summary_states,
 )
@@ -222,8 +221,8 @@ def class_table(site: Site, assignment_id: int) -> ClassTable:
         if about is None:
             raise HTTPException("own", 404)
         at = stamp(connection, assignment_id)
-        state = summary_states(connection, site.course, [about], {assignment_id: at})[assignment_id]
-        stored = stored_table(connection, assignment_id, state)
+        states = summary_states(connection, site.course, [about], {assignment_id: at})
+        stored = stored_tables(connection, states).get(assignment_id)
     return computed_table(site, assignment_id) if stored is None else ClassTable(about, at, *stored)
 
 

@@ -6,18 +6,16 @@ from dataclasses import dataclass
 from datetime import timedelta
 from pathlib import PurePath
 
-from sqlalchemy import Connection
 from starlette.responses import Response
 
-from coursework.database.areas import students_within
 from coursework.database.assignments import put_issued
 from coursework.database.class_summaries import ClassCounts, stored_counts, summary_states
-from coursework.database.instructor_queries import AssignmentOverview, listed_assignments, stamps
+from coursework.database.instructor_queries import AssignmentOverview, stamps
 from coursework.database.permissions import Permission, groups_within
 from coursework.errors import BadInput, CourseworkError
 from coursework.figures.dark import darkened
 from coursework.issuing.issued import Issued
-from coursework.site.desk.class_cache import assignment_title, class_here
+from coursework.site.desk.class_cache import assignments_marked, class_here
 from coursework.site.desk.class_table import computed_table, table_here
 from coursework.site.desk.question_cards import moment, question_card
 from coursework.site.frame.budgets import DESK_FILES, read_apart
@@ -39,7 +37,6 @@ class Tile:
     handed_in: int
     waiting: int
     last: str  #: time of the last submission; empty if there is none
-    is_published: bool
     fault: str = ""  #: reason for which it cannot be shown
 
 
@@ -65,19 +62,10 @@ def _stored(request: Request) -> tuple[list[AssignmentOverview], dict[int, Class
     """Return the assignments that the user may see, the stored counts that are true now, and the last leap of
     the clock."""
     with request.site.store.reading() as connection:
-        listed = listed_assignments(connection)
-        assignments = [item for item in listed if _sees(request, connection, item.id)]
+        assignments = [about for about, _ in assignments_marked(request, connection)]
         at = stamps(connection, [about.id for about in assignments])
         states = summary_states(connection, request.site.course, assignments, at)
         return assignments, stored_counts(connection, states), last_leap(connection, request.received_at)
-
-
-def _sees(request: Request, connection: Connection, number: int) -> bool:
-    """Return True if the user marks somebody in an assignment."""
-    if not request.user.may(Permission.MARKS_READ, number):
-        return False
-    within = students_within(connection, request.user, number)
-    return within is None or bool(within)
 
 
 def _is_whole(request: Request, about: AssignmentOverview) -> bool:
@@ -102,16 +90,14 @@ def _tile(request: Request, about: AssignmentOverview) -> Tile:
     except CourseworkError as fault:
         if isinstance(fault, HTTPException):
             raise
-        return Tile(
-            about.id, assignment_title(about, request.lang), about.name, 0, 0, 0, "", False, str(fault)
-        )
+        return Tile(about.id, about.title(request.lang), about.name, 0, 0, 0, "", str(fault))
     return _counted(request, table.about, table.counts)
 
 
 def _counted(request: Request, about: AssignmentOverview, counts: ClassCounts) -> Tile:
     last = moment(about.last, request.lang) if about.last else ""
-    title = assignment_title(about, request.lang)
-    return Tile(about.id, title, about.name, *counts, last, about.published is not None)
+    title = about.title(request.lang)
+    return Tile(about.id, title, about.name, *counts, last)
 
 
 def bring(request: Request) -> Response:

@@ -9,6 +9,7 @@ from sqlalchemy import Connection
 from starlette.responses import Response
 
 from coursework.database.assignments import contents_by_person
+from coursework.database.instructor_queries import AssignmentOverview
 from coursework.database.permissions import Permission
 from coursework.database.publication import StudentAssignment
 from coursework.errors import BadInput
@@ -18,7 +19,7 @@ from coursework.rendering.renderer import renderer_of
 from coursework.site.frame.requests import Request, Route
 from coursework.site.frame.responses import Download
 from coursework.site.papers.student_paper import StudentPaper, student_paper
-from coursework.site.publication.publishing import ListedAssignment, assignment_here, holders
+from coursework.site.publication.publishing import assignment_here, holders
 from coursework.system.zips import zipped
 
 
@@ -44,7 +45,7 @@ def sheets(request: Request) -> Response:
     return Download(zipped(files), "application/zip", f"{stem}.zip")
 
 
-def _papers(request: Request, connection: Connection, listed: ListedAssignment) -> list[StudentPaper]:
+def _papers(request: Request, connection: Connection, listed: AssignmentOverview) -> list[StudentPaper]:
     """Return the selected papers in order of issue, each in its own language."""
     ticked = set(request.form.texts.get("who", ())) if request.is_post else set()
     contents, papers = contents_by_person(connection, listed.id), []

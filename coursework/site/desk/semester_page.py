@@ -9,11 +9,10 @@ from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 from urllib.parse import urlencode
 
-from sqlalchemy import Connection
 from starlette.responses import Response
 
-from coursework.database.areas import group_of, groups_known, students_within
-from coursework.database.instructor_queries import AssignmentOverview, listed_assignments
+from coursework.database.areas import group_of, groups_known
+from coursework.database.instructor_queries import AssignmentOverview
 from coursework.database.permissions import Permission, group_key
 from coursework.errors import BadInput
 from coursework.gradebook import semester
@@ -24,7 +23,7 @@ from coursework.issuing.identity import identifies
 from coursework.issuing.students import folded
 from coursework.language.numbers import localise, typed_number
 from coursework.language.words import words
-from coursework.site.desk.class_cache import CLASS_GROUP, assignment_title
+from coursework.site.desk.class_cache import CLASS_GROUP, assignments_marked
 from coursework.site.desk.class_table import ClassTable, class_tables
 from coursework.site.desk.files import spreadsheet_of
 from coursework.site.frame.paging import page_of
@@ -108,16 +107,16 @@ def _table(request: Request) -> SemesterTable:
     absence = request.query_params.get(_ABSENT, semester.WORTH[0])
     group = group_key(request.query_params.get(CLASS_GROUP, ""))
     with request.site.store.reading() as connection:
-        theirs = _assignments(request, connection)
+        theirs = assignments_marked(request, connection)[::-1]
         groups = groups_known(connection)
     weights = {about.id: _weight(request, about) for about, _ in theirs}
     tables = class_tables(request.site, [about for about, _ in theirs if weights[about.id]])
     assignments, read = [], []
     for about, students in theirs:
         table, weight = tables.get(about.id), weights[about.id]
-        is_hidden = table is not None and bool((about.stated or {}).get("anonymous")) and table.waiting > 0
+        is_hidden = table is not None and bool(about.stated.get("anonymous")) and table.waiting > 0
         text = localise(f"{weight:g}", request.lang) if weight else ""
-        title = assignment_title(about, request.lang)
+        title = about.title(request.lang)
         assignments.append(WeighedAssignment(about.id, about.name, title, text, is_hidden))
         if table is not None and not is_hidden:
             read.append(_assessed(table, students, weight))
@@ -130,20 +129,6 @@ def _table(request: Request) -> SemesterTable:
         lines = [line for line in lines if group_key(line.group) == group]
     absence = absence if absence in semester.WORTH else semester.WORTH[0]
     return SemesterTable(assignments, read, lines, absence, groups, group)
-
-
-def _assignments(
-    request: Request, connection: Connection
-) -> list[tuple[AssignmentOverview, frozenset[str] | None]]:
-    """Return the assignments in which the user may read marks, the first issued first, with the students within
-    whom they may."""
-    found = []
-    for about in sorted(listed_assignments(connection), key=lambda about: about.id):
-        if request.user.may(Permission.MARKS_READ, about.id):
-            students = students_within(connection, request.user, about.id)
-            if students is None or students:
-                found.append((about, students))
-    return found
 
 
 def _weight(request: Request, about: AssignmentOverview) -> float:

@@ -57,7 +57,7 @@ def lesson(request: Request) -> Response:
     name = _name(request)
     if request.is_post and "place" in request.form.texts:
         return keep_place(request, name)
-    opened = _opened(request, name)
+    opened = lesson_of(request.site, name, lesson_lang(request.site, name, request.lang))
     checked: dict[int, list[CheckedBlank]] = {}
     is_complete = False
     if request.is_post:
@@ -105,10 +105,6 @@ def _name(request: Request) -> str:
     if name not in request.site.course.folder.lessons:
         raise HTTPException("page", 404)
     return name
-
-
-def _opened(request: Request, name: str) -> SteppedLesson:
-    return lesson_of(request.site, name, lesson_lang(request.site, name, request.lang))
 
 
 def _exercises(request: Request, name: str) -> list[LessonExercise]:

@@ -17,10 +17,8 @@ from typing import Any, NamedTuple
 from sqlalchemy import Connection
 
 from coursework.course.course import Course
-from coursework.database.assignments import issued_of
 from coursework.database.class_state import ClassState
-from coursework.database.current_marks import last_markings, lines_of, machine_marks
-from coursework.database.decisions import read_decisions
+from coursework.database.current_marks import adjusted_sheets
 from coursework.database.instructor_queries import stamp
 from coursework.database.publication import last_end, longer_for, published, student_assignments
 from coursework.database.settings import put_value, value_of
@@ -28,7 +26,6 @@ from coursework.database.submissions import submissions_of
 from coursework.errors import CourseworkError
 from coursework.gradebook.book import Gradebook, Result, results
 from coursework.gradebook.graded_sheet import Graded
-from coursework.gradebook.waiting import margins_of
 from coursework.issuing.issued import Issued
 from coursework.language.words import words
 from coursework.platforms.lti.launch import Launch
@@ -69,13 +66,8 @@ def marked_in(now: ClassState, student: str) -> Marked | None:
 
 def marked_of(course: Course[Any], connection: Connection, number: int, student: str) -> Marked | None:
     """Return the marks of one student alone, at a cost that does not depend on the size of the class."""
-    markings = last_markings(connection, number, student).values()
-    issued = issued_of(connection, number, student=student)
-    decisions = read_decisions(connection, number, student)
-    marked = machine_marks(issued, markings, lines_of(connection, markings))
-    sheets = [decisions.apply(graded) for _, graded in marked if not isinstance(graded, str)]
-    sheets = decisions.adjustments.applied(sheets, issued, margins_of(course, issued))
-    book = Gradebook(decisions.adjustments.on(issued))
+    issued, adjustments, sheets = adjusted_sheets(connection, number, student, course)
+    book = Gradebook(adjustments.on(issued))
     for graded in sheets:
         book.add(graded)
     return _marked(issued, dict(results(book)).get(student), sheets)

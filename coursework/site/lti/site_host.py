@@ -14,6 +14,7 @@ from starlette.responses import HTMLResponse, RedirectResponse, Response
 
 from coursework.database.assignments import issued_of
 from coursework.database.drafts import DraftChange, drafts, save
+from coursework.database.instructor_queries import listed_assignments
 from coursework.database.people import lock_person
 from coursework.database.publication import Phase, Publication, published, student_assignments
 from coursework.database.submissions import rows_of
@@ -32,7 +33,7 @@ from coursework.platforms.lti.refusal import LTIRefusal
 from coursework.platforms.lti.roles import Role
 from coursework.platforms.lti.services import SCORE, Member, NotServed
 from coursework.platforms.lti.storage import Storage
-from coursework.site.desk.class_cache import assignment_title, class_now
+from coursework.site.desk.class_cache import class_now
 from coursework.site.frame.requests import FormData, HTTPException, Person
 from coursework.site.frame.requests import Request as SiteRequest
 from coursework.site.frame.settings import Site
@@ -50,7 +51,7 @@ from coursework.site.papers.receipts import pending_marking
 from coursework.site.papers.starting import record_start, start_names
 from coursework.site.papers.student_paper import StudentPaper, read_lines
 from coursework.site.papers.submission import mark, rows_for, sheet_of, submit
-from coursework.site.publication.publishing import definition_of, listed_assignments, preview_paper
+from coursework.site.publication.publishing import definition_of, preview_paper
 
 FROM_A_PLATFORM = "site: from a platform"
 _BEST = "best"
@@ -340,7 +341,7 @@ class SiteHost:
             title = text_in(stated["title"], lang)
         else:
             now = class_now(self._site, linked.number)
-            stated, title = now.about.stated or {}, assignment_title(now.about, lang)
+            stated, title = now.about.stated, now.about.title(lang)
             opened = self._storage.opened(linked.number)
             here = {other.person for *_, other in opened if other.course == request.launch.course}
             with self._site.store.reading() as connection:

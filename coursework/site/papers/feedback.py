@@ -6,8 +6,7 @@ from datetime import timedelta
 from typing import Any
 
 from coursework.database.assignments import issued_content
-from coursework.database.current_marks import graded
-from coursework.database.decisions import read_decisions
+from coursework.database.current_marks import adjusted_sheets
 from coursework.database.marking import mark_submission
 from coursework.database.submissions import Submission, drawings_of
 from coursework.figures import Figure
@@ -31,14 +30,12 @@ def feedback_of(
     """Return the feedback on a submission, and the notes above it: for a late one, the penalty."""
     mark_submission(request.site.course, request.site.store, chosen.id)
     with request.site.store.reading() as connection:
-        sheets = [
-            sheet
-            for sheet in graded(connection, state.assignment.id, paper.student, request.site.course)
-            if sheet.sitting == chosen.number
-        ]
+        _, adjustments, sheets = adjusted_sheets(
+            connection, state.assignment.id, paper.student, request.site.course
+        )
         content = issued_content(connection, state.assignment.id, request.user.id)
-        adjustments = read_decisions(connection, state.assignment.id, paper.student).adjustments
     issued = adjustments.on(Issued(_allowed(content, state), state.assignment.name))
+    sheets = [sheet for sheet in sheets if sheet.sitting == chosen.number]
     telling = FeedbackOptions(solutions=_shows_solutions(issued, state))
     document = feedback_paper(
         request.site.course, issued, paper.student, sheets, request.lang, telling=telling

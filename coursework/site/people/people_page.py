@@ -19,7 +19,6 @@ from coursework.database.permissions import ASSISTANT, ROLES, STAFF, STUDENT, Ar
 from coursework.issuing.identity import EMAIL, LOGIN, plain
 from coursework.issuing.roster import Student
 from coursework.platforms.lti.storage import drop_launches
-from coursework.site.desk.class_cache import assignment_title
 from coursework.site.frame.budgets import DESK_FILE
 from coursework.site.frame.paging import page_of
 from coursework.site.frame.requests import HTTPException, Request, Route
@@ -211,7 +210,7 @@ def person_page(request: Request) -> Response:
 
 
 def _titled_assignments(request: Request, connection: Connection) -> list[tuple[int, str]]:
-    return [(about.id, assignment_title(about, request.lang)) for about in listed_assignments(connection)]
+    return [(about.id, about.title(request.lang)) for about in listed_assignments(connection)]
 
 
 def _gone(areas: Sequence[Area], groups: Any) -> dict[str, str]:

@@ -10,12 +10,13 @@ from datetime import datetime, timedelta
 from typing import Any, NamedTuple
 
 from markupsafe import Markup
-from sqlalchemy import Connection, Select, func, select
+from sqlalchemy import Connection, func, select
 from starlette.responses import Response
 
 from coursework.course.course import Course
 from coursework.course.secrecy import Secret
 from coursework.database.assignments import issued_content, issued_of, put_issued
+from coursework.database.instructor_queries import AssignmentOverview, listed_assignments, people_counts
 from coursework.database.permissions import Permission
 from coursework.database.prepared import drop_prepared
 from coursework.database.publication import (
@@ -37,7 +38,7 @@ from coursework.database.publication import (
     starts,
     student_assignments,
 )
-from coursework.database.tables import assignment, audit, dealt, delivery, variant
+from coursework.database.tables import audit, dealt, delivery, variant
 from coursework.errors import BadInput, CourseworkError
 from coursework.issuing.assignment import (
     MOST_VERSIONS,
@@ -80,58 +81,7 @@ _NOTED = 30  #: audit lines on a page
 _MOST_PAGES = 16  #: of a preview
 
 
-class ListedAssignment(NamedTuple):
-    """Assignment, as the instructor's pages list it."""
-
-    id: int
-    name: str
-    stated: Mapping[str, Any]
-    definition: Mapping[str, Any] | None
-    publication: Publication | None
-    students: int
-    handed_in: int  #: number of students with a submission
-
-    def title(self, lang: str) -> str:
-        return text_in(self.stated.get("title") or {}, lang) or self.name
-
-
-def listed_assignments(connection: Connection, number: int | None = None) -> list[ListedAssignment]:
-    """Return the assignments, the latest first; or one of them."""
-    columns = (
-        assignment.c.id,
-        assignment.c.name,
-        assignment.c.stated,
-        assignment.c.asked,
-        assignment.c.published,
-    )
-    query = select(*columns).order_by(assignment.c.id.desc())
-    if number is not None:
-        query = query.where(assignment.c.id == number)
-    many = select(variant.c.assignment_id, func.count(dealt.c.student.distinct())).select_from(
-        dealt.join(variant)
-    )
-    many = many.where(dealt.c.person_id.is_not(None)).group_by(variant.c.assignment_id)
-    students = _by_number(connection, many)
-    submitted = select(delivery.c.assignment_id, func.count(delivery.c.person_id.distinct())).group_by(
-        delivery.c.assignment_id
-    )
-    handed = _by_number(connection, submitted)
-    return [
-        ListedAssignment(
-            row.id, row.name, row.stated or {}, row.asked,
-            None if row.published is None else Publication.of(row.published),
-            students.get(row.id, 0), handed.get(row.id, 0),
-        )
-        for row in connection.execute(query)
-    ]  # fmt: skip
-
-
-def _by_number(connection: Connection, counted: Select[Any]) -> dict[int, int]:
-    """Return counts by number."""
-    return {row[0]: row[1] for row in connection.execute(counted)}
-
-
-def assignment_here(request: Request, connection: Connection) -> ListedAssignment:
+def assignment_here(request: Request, connection: Connection) -> AssignmentOverview:
     matches = listed_assignments(connection, int(request.path_params["number"]))
     if not matches:
         raise HTTPException("page", 404)
@@ -143,10 +93,14 @@ def assignment_here(request: Request, connection: Connection) -> ListedAssignmen
 
 def list_page(request: Request) -> Response:
     with request.site.store.reading() as connection:
-        assignments = listed_assignments(connection)
+        assignments, (students, handed_in) = listed_assignments(connection), people_counts(connection)
     phases = {item.id: _phase(item.publication, request.received_at) for item in assignments}
     return request.render(
-        "site/instructor/publish_list", found=assignments, phases=phases, lang_of=request.lang
+        "site/instructor/publish_list",
+        found=assignments,
+        phases=phases,
+        students=students,
+        handed_in=handed_in,
     )
 
 
@@ -245,7 +199,7 @@ def assignment_page(request: Request) -> Response:
     return _page(request, listed, listed.publication or _usual_publication(listed))
 
 
-def _usual_publication(listed: ListedAssignment) -> Publication:
+def _usual_publication(listed: AssignmentOverview) -> Publication:
     """Return the publication that the form proposes first: with the working time that the assignment states."""
     minutes = minutes_of(text_in(listed.stated.get("duration") or {}, ""))
     return Publication(minutes=minutes, takes_saved=minutes is not None)
@@ -253,7 +207,7 @@ def _usual_publication(listed: ListedAssignment) -> Publication:
 
 def _page(
     request: Request,
-    listed: ListedAssignment,
+    listed: AssignmentOverview,
     publication: Publication,
     faults: Sequence[Fault] = (),
     problem: str = "",
@@ -263,9 +217,10 @@ def _page(
         more = extensions(connection, listed.id)
         times = _working_times(request, listed, more, starts(connection, listed.id))
         noted = _noted(connection, listed.name)
+        students, handed_in = people_counts(connection)
     page = page_of(request, people, lambda holder: holder.student)
     return request.render(
-        "site/instructor/publish", 422 if faults or problem else 200, one=listed, said_now=publication, faults=faults, problem=problem,
+        "site/instructor/publish", 422 if faults or problem else 200, one=listed, students=students[listed.id], handed_in=handed_in[listed.id], said_now=publication, faults=faults, problem=problem,
         page=page, people=page.rows, has_versions=any(holder.letter for holder in people), is_issued=bool(people), extensions=more, noted=noted, phase=_phase(listed.publication, request.received_at), zone=zone_name(request.received_at),
         field=field_text, moment=lambda at: "" if at is None else moment_text(at, request.lang),
         exact=lambda at: exact_text(at, request.lang), late_rules=LATE, feedback_rules=FEEDBACK, answer_rules=ANSWERS,
@@ -285,7 +240,7 @@ class WorkingTime(NamedTuple):
 
 def _working_times(
     request: Request,
-    listed: ListedAssignment,
+    listed: AssignmentOverview,
     more: Mapping[int, Extension],
     times: Mapping[int, tuple[float, datetime | None]],
 ) -> dict[int, WorkingTime]:
@@ -328,7 +283,7 @@ def holders(connection: Connection, number: int) -> list[PaperHolder]:
         .order_by(func.min(dealt.c.place))
     )  # fmt: skip
     submitted = select(delivery.c.person_id, func.count()).where(delivery.c.assignment_id == number)
-    done = _by_number(connection, submitted.group_by(delivery.c.person_id))
+    done: dict[int, int] = dict(connection.execute(submitted.group_by(delivery.c.person_id)).all())
     return [
         PaperHolder(row[0], row[1], row[2], row[3], row[4], done.get(row[0], 0))
         for row in connection.execute(query)
@@ -343,12 +298,12 @@ def _noted(connection: Connection, name: str) -> list[Any]:
 
 
 def _note(
-    request: Request, connection: Connection, listed: ListedAssignment, event: str, **about: Any
+    request: Request, connection: Connection, listed: AssignmentOverview, event: str, **about: Any
 ) -> None:
     request.note(connection, event, assignment=listed.name, **about)
 
 
-def _redirect(listed: ListedAssignment) -> Response:
+def _redirect(listed: AssignmentOverview) -> Response:
     return redirect(f"/desk/assignments/{listed.id}")
 
 
@@ -529,7 +484,7 @@ def preview_paper(site: Site, definition: Assignment, lang: str) -> StudentPaper
     return StudentPaper(site.course, content, student.name, lang, definition.instructions)
 
 
-def definition_of(course: Course[Any], listed: ListedAssignment, issued: Issued) -> Assignment:
+def definition_of(course: Course[Any], listed: AssignmentOverview, issued: Issued) -> Assignment:
     """Return the assignment as its file states it; for one issued elsewhere, as its records state it."""
     if listed.definition is not None:
         return assignment_of(listed.name, listed.definition, course)
@@ -560,7 +515,7 @@ def as_somebody(request: Request) -> Response:
 
 
 def _seen(
-    request: Request, listed: ListedAssignment, state: AssignmentState, paper: StudentPaper, look: str
+    request: Request, listed: AssignmentOverview, state: AssignmentState, paper: StudentPaper, look: str
 ) -> Response:
     pieces = paper.pieces()
     return request.render(

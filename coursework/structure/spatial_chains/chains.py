@@ -185,19 +185,6 @@ class Chain(_Loops):
         at = self.measure
         return [np.array(j.twists(at.origin, at.length)).reshape(-1, 6) for j in self.joints]
 
-    @cached_property
-    def static_rank(self) -> Rank:
-        """Rank of the equilibrium equations of the moving bodies, computed from the actions themselves."""
-        at = self.measure
-        blocks = []
-        for joint in self.joints:
-            wrenches = np.array(joint.wrenches(at.origin, at.length)).reshape(-1, 6).T
-            column = np.zeros((6 * (self.n + 1), wrenches.shape[1]))
-            for body, sense in zip(joint.between, (1, -1), strict=True):
-                column[6 * body : 6 * body + 6] = sense * wrenches
-            blocks.append(column[6:])
-        return rank_of(np.concatenate(blocks, axis=1), "the equations of equilibrium")
-
 
 _IN_PLANE = (2, 3, 4)  #: rotation about z, velocities along x and y
 _PLANAR = {(0, 0): "rigid", (1, 0): "revolute", (0, 1): "prismatic", (1, 1): "point_contact", (1, 2): "free"}

@@ -42,7 +42,7 @@ def test_variants_ask_about_the_group_of_a_body_that_moves():
     for variant in EXERCISE.variants(range(60)):
         printed, found = variant.printed, variant.solution()
         parts = decompose(printed["joints"], printed["driver"])
-        group = parts.group_of(printed["body"])
+        group = next(group for group in parts.groups if printed["body"] in group.bodies)
         assert found == {
             "group_count": len(parts.groups),
             "group_size": len(group.bodies),
