@@ -250,7 +250,7 @@ def _stored(context: click.Context, course: Course, url: str, name: str) -> tupl
 
 
 def _steps(exam: Exam, asked: Mapping[str, Any]) -> Iterator[Decision]:
-    """Yield the steps that the options ask for; what is asked of several questions at once is one stroke."""
+    """Yield the steps that the options ask for; what is asked of several questions at once is one batch."""
     from coursework.gradebook import adjustments as kinds
     from coursework.gradebook.after import steps_on
     from coursework.gradebook.decisions import ACCEPTED, GIVEN
@@ -377,7 +377,7 @@ def _tell(exam: Exam, restated: Sequence[Decision], notes: Sequence[Message]) ->
     print_table([_question_row(question, texts, lang) for question in exam.table], texts["table"])
     if restated or notes:
         click.echo(f"\n{texts['file_says']}")
-    for _, text in said.stroke_texts(exam, restated, lang):
+    for _, text in said.batch_texts(exam, restated, lang):
         click.echo(f"  {text}")
     for note in notes:
         click.echo(f"  {localised(note)}")
@@ -407,11 +407,11 @@ def _tell_cards(exam: Exam) -> None:
 
 
 def step_lines(exam: Exam, steps: Iterable[Decision], lang: str) -> list[str]:
-    """Return a line on the steps of each stroke: its id, the day, who, what, and why."""
+    """Return a line on the steps of each batch: its id, the day, who, what, and why."""
     from coursework.gradebook import after_words as said
 
     lines = []
-    for step, text in said.stroke_texts(exam, steps, lang):
+    for step, text in said.batch_texts(exam, steps, lang):
         day = step.made.astimezone().date().isoformat() if step.made else "–"
         line = str(words(lang)["after"]["step_line"]).format(day, step.by, text)
         lines.append(one_line(f"{step.id}  {line} ({step.reason})" if step.reason else f"{step.id}  {line}"))
@@ -455,7 +455,7 @@ def _tell_preview(
     texts, colon = words(lang)["after"], words(lang)["sheet"]["colon"]
     made = steps[: len(steps) - len(undone)]
     click.echo(texts["preview"])
-    for _, text in said.stroke_texts(exam, (step for step in made if not step.student), lang):
+    for _, text in said.batch_texts(exam, (step for step in made if not step.student), lang):
         click.echo(one_line(text))
     for line in reversed(step_lines(exam, (step for step in undone if not step.student), lang)):
         click.echo(texts["to_undo"].format(line))

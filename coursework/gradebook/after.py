@@ -347,7 +347,7 @@ class Exam:
         return sum(line is not None and wanted.is_on(line) for line in lines)
 
     def put_away(self, by: str, reason: str) -> list[Decision]:
-        """Return the decisions that give no points to all non-answers, as one stroke."""
+        """Return the decisions that give no points to all non-answers, as one batch."""
         return as_one(
             step(GIVEN, one.sheet.exercise, one.mark.part, 0.0, one.mark.answer, reason, by)._replace(
                 student=one.student, seed=str(one.sheet.seed)
@@ -356,7 +356,7 @@ class Exam:
         )
 
     def refusals(self, questions: Collection[Question]) -> list[Decision]:
-        """Return the steps that give no points to every answer that waits in some questions, as one stroke."""
+        """Return the steps that give no points to every answer that waits in some questions, as one batch."""
         answers = dict.fromkeys(
             (group.exercise, group.part, one.mark.answer)
             for group, members in self.open
@@ -517,7 +517,7 @@ def steps_on(
     *,
     lang: str = "en",
 ) -> list[Decision]:
-    """Return a change of what a place names (:meth:`Exam.called`), one stroke whatever the number of its questions; without a
+    """Return a change of what a place names (:meth:`Exam.called`), one batch whatever the number of its questions; without a
     place of everything.
 
     Raises
@@ -534,9 +534,9 @@ def steps_on(
 
 
 def as_one(steps: Iterable[Decision]) -> list[Decision]:
-    """Return steps as one stroke: one decision, which is told and taken back as a whole."""
-    stroke = new_id()
-    return [one._replace(id=stroke) for one in steps]
+    """Return steps as one batch: one decision, which is told and taken back as a whole."""
+    batch = new_id()
+    return [one._replace(id=batch) for one in steps]
 
 
 def undoing(steps: Sequence[Decision], by: str, reason: str = "") -> list[Decision]:
@@ -554,7 +554,7 @@ def steps_since(steps: Sequence[Decision], day: date) -> Sequence[Decision]:
 class Restated(NamedTuple):
     """Difference between an assignment's file and what was issued."""
 
-    steps: tuple[Decision, ...]  #: one stroke: new weights, margins and prices, and the new step of the mark
+    steps: tuple[Decision, ...]  #: one batch: new weights, margins and prices, and the new step of the mark
     notes: tuple[Message, ...]  #: differences that no step applies
 
 

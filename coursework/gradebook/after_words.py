@@ -13,7 +13,7 @@ from coursework.language.numbers import localise
 from coursework.language.words import words
 
 _LONGEST = 70  #: characters of an error in words
-_TOLD, _NUMBERS = 6, 12  #: changes of one stroke, and numbers of questions of one change, that are told
+_TOLD, _NUMBERS = 6, 12  #: changes of one batch, and numbers of questions of one change, that are told
 
 
 def number(value: float, lang: str, digits: int = 4) -> str:
@@ -21,16 +21,16 @@ def number(value: float, lang: str, digits: int = 4) -> str:
     return localise(f"{value:.{digits}g}", lang)
 
 
-def stroke_texts(exam: Exam, steps: Iterable[Decision], lang: str) -> list[tuple[Decision, str]]:
-    """Return the first of the decisions that were made at one stroke, and what they do, stroke by stroke in their order."""
-    strokes: dict[str, list[Decision]] = {}
+def batch_texts(exam: Exam, steps: Iterable[Decision], lang: str) -> list[tuple[Decision, str]]:
+    """Return the first of the decisions that were made together, and what they do, batch by batch in their order."""
+    batches: dict[str, list[Decision]] = {}
     for one in steps:
-        strokes.setdefault(one.id, []).append(one)
-    return [(made[0], stroke_text(exam, made, lang)) for made in strokes.values()]
+        batches.setdefault(one.id, []).append(one)
+    return [(made[0], batch_text(exam, made, lang)) for made in batches.values()]
 
 
-def stroke_text(exam: Exam, made: Sequence[Decision], lang: str) -> str:
-    """Return what the decisions of one stroke do: those that do the same to several questions are told together."""
+def batch_text(exam: Exam, made: Sequence[Decision], lang: str) -> str:
+    """Return what the decisions of one batch do: those that do the same to several questions are told together."""
     texts = words(lang)["after"]
     if all(one.student for one in made):
         return str(texts["aside"]).format(len(made))

@@ -37,7 +37,7 @@ class Decision(NamedTuple):
     made: datetime | None = None
     line: int = 0  #: of the file
     location: str = ""  #: the same, for messages
-    id: str = ""  #: lasting name, which decisions made at one stroke share
+    id: str = ""  #: lasting name, which decisions of one batch share
     withdraws: str = ""  #: id of what a withdrawal takes back; empty for the last on its place
 
     @property

@@ -88,10 +88,10 @@ class Decisions:
 
     def put_aside(self, reasons: Iterable[str]) -> list[Decision]:
         """Return the standing decisions that give no points to answers of students, for one of these reasons or several of them
-        at one stroke."""
+        in one batch."""
         given = [one for one in self._own_in_force if one.kind == GIVEN and not one.points]
-        wanted, strokes = {*reasons}, Counter(one.id for one in given if one.id)
-        return [one for one in given if one.reason in wanted or strokes[one.id] > 1]
+        wanted, batches = {*reasons}, Counter(one.id for one in given if one.id)
+        return [one for one in given if one.reason in wanted or batches[one.id] > 1]
 
     @cached_property
     def _own_in_force(self) -> list[Decision]:
@@ -99,7 +99,7 @@ class Decisions:
 
     def called(self, name: str) -> list[Decision]:
         """Return the standing decisions of an id, or of the only one that begins so by three letters at least; those of one
-        stroke together.
+        batch together.
 
         Raises
         ------

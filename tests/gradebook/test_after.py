@@ -191,7 +191,7 @@ def test_prices_changed_in_the_file_count_when_confirmed_as_if_the_papers_had_st
     assert after() == 1
     assert "digits = 5 in [marking], and the papers 4" in capsys.readouterr().out
     assert after("--restated", "--yes") == 0
-    (stroke,) = {row["id"] for row in table(folder / "decisions.csv")}
+    (batch,) = {row["id"] for row in table(folder / "decisions.csv")}
     prices = {row["answer"]: row["points"] for row in table(folder / "decisions.csv")}
     assert (prices["slip:sign"], prices["follow_through"]) == ("0.75", "0.4")
     capsys.readouterr()
@@ -201,8 +201,8 @@ def test_prices_changed_in_the_file_count_when_confirmed_as_if_the_papers_had_st
     assert decided != before
     content["assignment"]["marking"] = {"follow_through": 0.4, "prices": {"sign": 0.75, "mistake": 0.25}}
     plain.write_text(json.dumps(content), "utf-8")
-    assert after("--undo", stroke, "--yes") == 0
-    assert table(folder / "decisions.csv")[-1]["withdraws"] == stroke
+    assert after("--undo", batch, "--yes") == 0
+    assert table(folder / "decisions.csv")[-1]["withdraws"] == batch
     assert (folder / "marks.csv").read_text("utf-8") == decided
 
 
@@ -237,12 +237,12 @@ def test_digits_and_the_other_case_count_as_if_the_papers_had_stated_them(tmp_pa
     grade(course, papers, rows)
     before = points()
     assert run(["after", str(file), "--restated", "--yes"]) == 0
-    (stroke,) = {row["id"] for row in table(tmp_path / "marks" / "decisions.csv")}
+    (batch,) = {row["id"] for row in table(tmp_path / "marks" / "decisions.csv")}
     capsys.readouterr()
     run(["after", str(file)])
-    assert f"{stroke}  " in capsys.readouterr().out
+    assert f"{batch}  " in capsys.readouterr().out
     applied = points()
-    assert run(["after", str(file), "--undo", stroke, "--yes"]) == 0
+    assert run(["after", str(file), "--undo", batch, "--yes"]) == 0
     assert points() == before
     plain = tmp_path / "issued.json"
     content = json.loads(plain.read_text("utf-8"))
@@ -267,11 +267,11 @@ def test_who_puts_answers_away_is_written_and_told(marked, capsys):
     ]
     capsys.readouterr()
     after()
-    (stroke,) = {line["id"] for line in lines}
-    assert re.search(rf"{stroke}  \d+-\d+-\d+, Mme Roy: .*put away: 2", capsys.readouterr().out)
+    (batch,) = {line["id"] for line in lines}
+    assert re.search(rf"{batch}  \d+-\d+-\d+, Mme Roy: .*put away: 2", capsys.readouterr().out)
     assert after("--weight", "1.1=9", "--yes") == 0  # the next writing keeps who it was
     assert table(folder / "decisions.csv")[0]["by"] == "Mme Roy"
-    assert after("--undo", stroke, "--yes") == 0
+    assert after("--undo", batch, "--yes") == 0
     assert "provisional" in table(folder / "summary.csv")[0]
 
 

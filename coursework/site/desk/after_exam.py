@@ -131,7 +131,7 @@ def _done(request: Request, now: ClassState, exam: Exam) -> str:
         if not kept:
             return str(texts["file_same"])
         exam.preview(kept)  # one that makes no sense stops here
-        done = after_words.stroke_text(exam, kept, request.lang)
+        done = after_words.batch_text(exam, kept, request.lang)
     else:
         return ""
     number = request.path_params["assignment"]
@@ -166,8 +166,8 @@ def _undone(exam: Exam, asked: str) -> Sequence[Decision]:
 def _undone_texts(exam: Exam, undone: Sequence[Decision], lang: str, tense: str) -> list[str]:
     """Return a line for each decision that is taken back, the last first; one for all answers of students together."""
     texts = words(lang)["after"]
-    strokes = after_words.stroke_texts(exam, (one for one in undone if not one.student), lang)
-    lines = [text for _, text in reversed(strokes)]
+    batches = after_words.batch_texts(exam, (one for one in undone if not one.student), lang)
+    lines = [text for _, text in reversed(batches)]
     own = sum(bool(one.student) for one in undone)
     return [
         str(texts[tense]).format(line) for line in [*lines, *([texts["aside"].format(own)] if own else [])]
@@ -175,7 +175,7 @@ def _undone_texts(exam: Exam, undone: Sequence[Decision], lang: str, tense: str)
 
 
 def _steps(request: Request, now: ClassState, exam: Exam, fields: Mapping[str, str]) -> list[Decision]:
-    """Return the steps that the fields of a form state, one stroke.
+    """Return the steps that the fields of a form state, one batch.
 
     Raises
     ------
@@ -213,7 +213,7 @@ def _page(request: Request, now: ClassState, fields: Mapping[str, str], message:
         try:
             if fields["kind"]:
                 changes = _steps(request, now, exam, fields)
-                texts = [after_words.stroke_text(exam, changes, lang)] if changes else []
+                texts = [after_words.batch_text(exam, changes, lang)] if changes else []
                 message = message or ("" if changes else words(lang)["after"]["file_same"])
                 written_so = exam.count_of(changes[0]) if changes[0].kind in (ACCEPTED, GIVEN) else None
             else:
@@ -231,8 +231,8 @@ def _page(request: Request, now: ClassState, fields: Mapping[str, str], message:
     names_of = Names(now.course, statistics_of(now), lang)
     captions = {(one.exercise, one.part): names_of.question(one) for one in exam.table}
     current = exam.distribution()
-    strokes = after_words.stroke_texts(exam, exam.decisions.standing_steps, lang)
-    aside = after_words.stroke_texts(exam, exam.put_aside, lang)
+    batches = after_words.batch_texts(exam, exam.decisions.standing_steps, lang)
+    aside = after_words.batch_texts(exam, exam.put_aside, lang)
     sorts = words(lang)["after"]["sorts"]
     names: dict[str, Any] = {
         "exam": exam,
@@ -244,7 +244,7 @@ def _page(request: Request, now: ClassState, fields: Mapping[str, str], message:
         "current": current,
         "bins": after_words.bins(current, lang),
         "steps": [
-            (moment(one.made, lang) if one.made else "", one, text) for one, text in (*strokes, *aside)
+            (moment(one.made, lang) if one.made else "", one, text) for one, text in (*batches, *aside)
         ],
         "offered": OFFERED,
         "caption": lambda question: captions[question.exercise, question.part],
@@ -253,7 +253,7 @@ def _page(request: Request, now: ClassState, fields: Mapping[str, str], message:
         "points_text": lambda question: after_words.points_text(question, lang),
         "counting_text": lambda question: after_words.counting_text(question, lang),
         "errors": _errors(exam, lang),
-        "file_says": [text for _, text in after_words.stroke_texts(exam, changed.steps, lang)],
+        "file_says": [text for _, text in after_words.batch_texts(exam, changed.steps, lang)],
         "file_notes": [localised(note) for note in changed.notes],
         "kind_of_file": FILE,
         "kinds": {
@@ -266,7 +266,7 @@ def _page(request: Request, now: ClassState, fields: Mapping[str, str], message:
             for name in dict.fromkeys(exercise for exercise, _ in exam.questions)
         },
         "on_questions": [kind for kind in OFFERED if kind not in OF_NO_QUESTION],
-        "ids": [one.id for one, _ in strokes],
+        "ids": [one.id for one, _ in batches],
         "most_rows": _MOST_ROWS,
         "most": max((*current.counts, *(preview.now.counts if preview else ())), default=0),
     }
