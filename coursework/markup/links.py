@@ -1,4 +1,4 @@
-"""Links in the texts of a course: to an exercise, to a lesson or a section of one, and terms of an index.
+"""Links in the texts of a course: to an exercise, to a lesson, a section or a numbered figure of one, and terms of an index.
 
 ``[the construction](exercise:two_circles)``, ``[positions](lesson:positions#3)``, ``[dead points](#index "dead point")``.
 """
@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 _LINK = re.compile(
     r"\[(?P<said>[^\[\]]+)\]\("
-    r"(?:(?P<kind>exercise|lesson):(?P<name>\w+)(?:#(?P<section>\d+))?|#(?P<mark>index|word|machine)(?:\s+\"(?P<entry>[^\"]*)\")?)\)"
+    r"(?:(?P<kind>exercise|lesson|figure(?=:\w+#)):(?P<name>\w+)(?:#(?P<section>\d+(?:\.\d+)?))?|#(?P<mark>index|word|machine)(?:\s+\"(?P<entry>[^\"]*)\")?)\)"
 )
 _VERBATIM = re.compile(r"(```.*?```|`[^`\n]*`)", re.DOTALL)
 
@@ -21,12 +21,13 @@ WORD, MACHINE = "word", "machine"  #: words that an index has found in the text,
 
 @dataclass(frozen=True)
 class TextLink:
-    """Link to an exercise or a lesson, or a term with its entry in the index."""
+    """Link to an exercise, a lesson or a figure of one, or a term with its entry in the index."""
 
     said: str
-    kind: str  #: exercise, lesson, term, or of what an index has found: word or machine
+    kind: str  #: exercise, lesson, figure, term, or of what an index has found: word or machine
     name: str  #: of the exercise or lesson, or the entry
     section: int = 0
+    number: str = ""  #: of a figure
 
 
 def relinked(text: str, write: Callable[[TextLink], str]) -> str:
@@ -46,4 +47,6 @@ def _link(match: re.Match[str]) -> TextLink:
     if match["kind"] is None:
         kind = TERM if match["mark"] == "index" else match["mark"]
         return TextLink(text, kind, " ".join((match["entry"] or text).split()))
+    if match["kind"] == "figure":
+        return TextLink(text, "figure", match["name"], number=match["section"])
     return TextLink(text, match["kind"], match["name"], int(match["section"] or 0))

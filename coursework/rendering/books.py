@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
@@ -35,6 +36,8 @@ from coursework.sheets.paper import Paper, PaperHeading, SolutionPaper
 
 _MARKS = {TERM: INDEX, WORD: f"#{WORD}", MACHINE: f"#{MACHINE}"}  #: where the marks of the index lead to
 _TALL = 78  #: mm that a drawing of a lesson takes at most
+#: A paragraph that stands above what it names.
+_RUN_IN = re.compile(r"\*\*[^*\n]+\*\*|(?![-*>|\d ])(?s:.){,400}:")
 
 # -------------------------------------------------------------------------- PDF
 
@@ -91,10 +94,10 @@ def _of_book(book: Book) -> dict[str, Any]:
 
 def _exercise(env: Environment, exercise: BookExercise, whose: str, end: str) -> dict[str, Any]:
     """Return the variables for the template of an exercise: its body, and that of its solution. ``whose`` stands above what was
-    moved to the next page, where a question may stand alone as the text goes on after it."""
+    moved to the next page, where a question may stand alone as the text goes on after it: figures, and polygons of solutions."""
     names = views.context(exercise.handout, 1, numbered=False) | {"whose": whose, "together": 1}
     names["body"] = Markup(render(env, f"sheet/_body.{end}", names))
-    solved = views.context(exercise.solution, 1, numbered=False)
+    solved = views.context(exercise.solution, 1, numbered=False) | {"moving": whose}
     names["solution_body"] = Markup(render(env, f"sheet/_solution_body.{end}", solved))
     return names
 
@@ -110,6 +113,8 @@ def _typst_pieces(
     def write(link: TextLink) -> str:
         if link.kind in _MARKS:
             return f'[{link.said}]({_MARKS[link.kind]} "{typeset(link.name, book.lang)}")'
+        if link.kind == "figure":
+            return f"[{link.said}](#figure-{link.number})"
         if link.name not in numbers[link.kind]:
             return link.said
         section = f"-{link.section}" if link.section else ""
@@ -123,7 +128,27 @@ def _typst_pieces(
         "floats": floats,
     }
     names["relinked"] = lambda text: relinked(text, write)
+    names["led"] = _led
     return Markup(render(env, "book/_pieces.typ.j2", names))
+
+
+def _led(text: str, *, last: bool) -> Iterator[tuple[str, bool]]:
+    """Yield running text in parts, each with whether it keeps to what follows it: a paragraph in bold alone, as a heading is; a
+    short one that ends with a colon; and the ``last`` one where it leads to the next piece."""
+    *paragraphs, end = text.strip("\n").split("\n\n")
+    plain: list[str] = []
+    for paragraph in paragraphs:
+        if _RUN_IN.fullmatch(paragraph):
+            yield "\n\n".join(plain), False
+            yield paragraph, True
+            plain = []
+        else:
+            plain.append(paragraph)
+    if last or _RUN_IN.fullmatch(end):
+        yield "\n\n".join(plain), False
+        yield end, True
+    else:
+        yield "\n\n".join([*plain, end]), False
 
 
 def _is_printed(piece: Piece) -> bool:
@@ -320,7 +345,9 @@ def _own_exercises(book: Book, lesson: LessonText) -> tuple[BookExercise, ...]:
 def _html_pieces(env: Environment, book: Book, lesson: LessonText, names: Mapping[str, Any]) -> Markup:
     def address(link: TextLink) -> str:
         file = f"{link.name}.html"
-        section = f"#section-{link.section}" if link.section else ""
+        section = (
+            f"#section-{link.section}" if link.section else f"#figure-{link.number}" if link.number else ""
+        )
         return f"{file}{section}" if file in names["files"] else ""
 
     return LessonPages(env, lesson, address).html(lesson.pieces)

@@ -34,7 +34,10 @@ _MOVING = re.compile(
     r"#(?:in-room|lesson-figure)\("
 )  #: where a block begins that moves to where there is room
 _SETTLED = re.compile(r"^#let settled = .*$", re.MULTILINE)
-_LAYOUTS = 4  #: of a document whose blocks move
+_GUESSED = re.compile(r"^#let guessed = .*$", re.MULTILINE)
+_PART = "\n//#\n"  #: above each part of a document that begins on a page of its own
+_UNLINKED = "\n#let link(place, body) = body"  #: in a part alone: what it links to may stand in another
+_LAYOUTS = 4  #: of a part whose blocks move
 _FORGETTING = 40  #: documents, a third of a millisecond each
 
 
@@ -159,28 +162,56 @@ def compile_pdf(typst_source: str, folders: Sequence[Path] = ()) -> bytes:
 def compile_settled(typst_source: str, folders: Sequence[Path] = ()) -> bytes:
     """Return the PDF of a source whose blocks move to the next page where they find no room, as :func:`compile_pdf` does.
 
-    Where blocks move is chosen from a layout, and moves what comes after. In a long document the layouts do not settle
-    within the typesetter's attempts, and page numbers would be those of the layout before: then the last choices are kept.
+    Where blocks move is chosen from layouts of each part alone, so that a change in one moves nothing in another. Then the
+    whole is laid out with these choices, and only its page numbers have to settle.
 
     Raises BadStatement as :func:`compile_pdf` does, and where page numbers do not settle though no block moves any more.
     """
     counter = count(1)
     numbered = _MOVING.sub(lambda call: f'{call[0]}number: "{next(counter)}", ', drawn(typst_source, folders))
+    start, *parts = numbered.split(_PART)
+    start = start.replace(_DEFINITIONS_END, _UNLINKED + _DEFINITIONS_END)
+    drafts = [start + part for part in parts if _MOVING.search(part)] if parts else [numbered]
     with _complaints():
-        for _ in range(_LAYOUTS):
-            written = files(numbered)
-            # Asked before it writes the file, the compiler lays the pages out once.
-            compiler = _opened(written, folders)
-            chosen = json.loads(compiler.query("<chosen>", field="value"))
-            document, warnings = compiler.compile_with_warnings(input=written, **_TAGGED)
-            if not any("converge" in str(warning) for warning in warnings):
-                return document
-            settled = "".join(f'"{k}": ({str(kept).lower()}, {left:.3f}mm), ' for k, kept, left in chosen)
-            numbered = _SETTLED.sub(f"#let settled = ({settled})", numbered)
-    raise BadStatement(
-        f"the pages do not settle after {_LAYOUTS} layouts, so references would name wrong pages; change what moves"
-        " about: the last figures of a chapter, or a template of the course"
-    )
+        chosen = "".join(_choices(draft, folders) for draft in drafts)
+        document, is_settled = _laid_out(files(_told(_SETTLED, chosen, numbered)), folders, **_TAGGED)
+    if not is_settled:
+        raise BadStatement(
+            "the pages do not settle, so references would name wrong pages; change what moves about: the last figures of"
+            " a chapter, or a template of the course"
+        )
+    return document
+
+
+def _choices(draft: str, folders: Sequence[Path]) -> str:
+    """Return what a source chooses for each of its blocks that move, as entries of the typesetter's dictionary.
+
+    What is moved moves what comes after it, so the typesetter's attempts may end before a layout agrees with its choices: the
+    next ones begin with these. Blocks that go to and fro are left where they were last.
+    """
+    chosen = ""
+    for _ in range(_LAYOUTS):
+        written = files(_told(_GUESSED, chosen, draft))
+        # It is laid out once: what the query has laid out is remembered.
+        found = json.loads(_opened(written, folders).query("<chosen>", field="value"))
+        before, chosen = (
+            chosen,
+            "".join(f'"{k}": ({str(kept).lower()}, {left:.3f}mm), ' for k, kept, left in found),
+        )
+        if chosen == before or _laid_out(written, folders, format="pdf")[1]:
+            break
+    return chosen
+
+
+def _told(line: re.Pattern[str], chosen: str, typst_source: str) -> str:
+    """Return the source with choices in a line of its definitions."""
+    return line.sub(lambda found: f"{found[0].partition('=')[0]}= ({chosen or ':'})", typst_source)
+
+
+def _laid_out(written: Mapping[str, bytes], folders: Sequence[Path], **options: Any) -> tuple[bytes, bool]:
+    """Return the document of files by name, and whether its pages settled."""
+    document, warnings = _opened(written, folders).compile_with_warnings(input=written, **options)
+    return document, not any("converge" in str(warning) for warning in warnings)
 
 
 def compile_pictures(typst_source: str, folders: Sequence[Path], ppi: float) -> list[bytes]:

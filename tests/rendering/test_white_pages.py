@@ -112,6 +112,18 @@ def test_what_a_page_says_of_a_place_is_so_where_layouts_do_not_settle():
     assert page.get_height() - text.get_charbox(0)[3] == pytest.approx(told, abs=12)
 
 
+def test_what_a_part_of_a_document_chooses_hangs_on_no_other():
+    """A block that would move since another part has a mark stays where it is: each part chooses alone."""
+    start = UNSETTLED.partition("#in-room()")[0]
+    start = start.replace("depth() > 200pt", "query(<told>).len() < 2").replace("200pt", "300pt")
+    part = "\n//#\n#pagebreak(weak: true)\n#in-room()\n#context [#metadata(none)<told> at #here().position().y.pt()]"
+    pages = [
+        [page.get_textpage().get_text_range() for page in pypdfium2.PdfDocument(pdf.compile_settled(source))]
+        for source in (start + part, start + part + part)
+    ]
+    assert pages[1] == 2 * pages[0]
+
+
 NEVER_SETTLED = (
     UNSETTLED.partition("//=")[0]
     + """

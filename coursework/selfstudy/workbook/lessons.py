@@ -180,7 +180,8 @@ class _Lesson:
                     f"{self._name}: the lesson shows no figure {name!r}{nearest(name, self._figures)}"
                 )
             number = form.format(self._figures[name])
-            return number if said[:1].isupper() else number[:1].lower() + number[1:]
+            cited = number if said[:1].isupper() else number[:1].lower() + number[1:]
+            return f"[{cited}](figure:{self._name}#{self._figures[name]})"
 
         for pieces in parts:
             yield tuple(

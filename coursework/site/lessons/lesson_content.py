@@ -79,6 +79,8 @@ def render_lesson(course: Course[Any], name: str, lang: str) -> SteppedLesson:
 def _address(link: TextLink) -> str:
     if link.kind == "exercise":
         return f"/practice/{link.name}"
+    if link.number:
+        return f"/lessons/{link.name}?{WHOLE}#figure-{link.number}"
     return lesson_address(link.name, link.section)
 
 

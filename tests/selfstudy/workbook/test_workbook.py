@@ -11,6 +11,7 @@ from pathlib import Path
 from urllib.parse import unquote_to_bytes
 
 import nbformat
+import pypdfium2
 import pytest
 from pdf_links import wrong_references
 from pdf_text import page_texts
@@ -25,6 +26,7 @@ from coursework.selfstudy.workbook.files import files, lesson_notebook
 from coursework.selfstudy.workbook.lessons import faults, lesson_text
 from coursework.sheets.book import Book, BookChapter, BookExercise, BookSection
 from coursework.sheets.handout import handout
+from coursework.site.lessons.lesson_content import render_lesson
 
 CHAPTERS = """
 [[chapters]]
@@ -166,8 +168,19 @@ def test_a_lesson_cites_its_figures_by_their_numbers(folder):
     path.write_text(
         path.read_text("utf-8").replace("Back to", "See [the figure](figure:one_rod). Back to"), "utf-8"
     )
-    told = lesson_text(coursework.open_course(folder), "rods", "en")
-    assert any("See figure 1.1. Back to" in getattr(piece, "text", "") for piece in told.pieces)
+    small = coursework.open_course(folder)
+    told = lesson_text(small, "rods", "en")
+    cited = "See [figure 1.1](figure:rods#1.1). Back to"
+    assert any(cited in getattr(piece, "text", "") for piece in told.pieces)
+    page = made(small, formats=["html"])["pages/rods.html"].decode()
+    assert '<a href="rods.html#figure-1.1">figure 1.1</a>' in page
+    assert 'id="figure-1.1"' in page
+    (address,) = re.findall(r'href="/lessons/rods\?whole#(figure-1\.1)"', _on_the_site(small))
+    assert f'id="{address}"' in _on_the_site(small)
+
+
+def _on_the_site(course):
+    return "".join(step.html for step in render_lesson(course, "rods", "en").steps)
 
 
 def test_a_lesson_leaves_nothing_behind(small, tmp_path, monkeypatch):
@@ -210,8 +223,19 @@ def test_the_same_course_language_and_seed_give_the_same_bytes(small):
     assert other["pages/rods.html"] == first["pages/rods.html"]
 
 
+#: Words that lead back to another question, in a list or a drill to none; an instant or a position is that of the figure.
+REFERRING = {
+    "en": re.compile(
+        r"^(Its|Their|Likewise)\b|\b(same|these|those|they|them|with it)\b|\bthat (velocity|equation|instant)\b"
+    ),
+    "fr": re.compile(
+        r"^(Son|Sa|Ses|De même)\b|\b(même|ces|elles?|eux)\b|\bcette (?!position)|\bcet (?!instant)|\bauquel il\b"
+    ),
+}
+
+
 def test_the_list_of_symbols_has_the_same_symbols_in_every_language(course):
-    """Over all exercises: a symbol that one language's first clause lacks is missing from its list."""
+    """Over all exercises: a symbol that one language's first clause lacks is missing from its list. Each meaning stands alone."""
     listed = []
     for lang in languages():
         asked = [
@@ -220,6 +244,7 @@ def test_the_list_of_symbols_has_the_same_symbols_in_every_language(course):
         ]
         book = Book(lang, "", 0, (BookChapter(1, "", (BookSection(None, tuple(asked)),)),), True)
         assert all(row.meaning[0].isupper() for row in book.symbols)
+        assert [row for row in book.symbols if REFERRING[lang].search(row.meaning)] == []
         listed.append({(row.symbol, one.handout.exercise) for row in book.symbols for one in row.exercises})
     first, second = listed
     assert first ^ second == set()
@@ -306,6 +331,22 @@ def test_a_section_without_a_lesson_bears_its_title(folder):
     pages = page_texts(found["workbook.en.pdf"])
     assert [k for k, page in enumerate(pages) if "More & more" in page][:1] == [1]
     assert sum("More & more" in page for page in pages) == 2
+
+
+def test_no_page_ends_with_what_stands_above_other_lines(folder):
+    """A heading in bold and a line that announces others go to the next page with them."""
+    path = folder / "exercises/lessons/rods.en.md"
+    told = "".join(
+        f"{'Words ' * (1 + 13 * k % 37)}.\n\n**Solution.**\n\n- one\n- two\n\nWhat follows:\n\n- three\n\n"
+        for k in range(90)
+    )
+    path.write_text(path.read_text("utf-8").replace("**Question 1.**", told + "**Question 1.**"), "utf-8")
+    pdf = made(coursework.open_course(folder), formats=["pdf"])["workbook.en.pdf"]
+    texts = [page.get_textpage().get_text_bounded() for page in pypdfium2.PdfDocument(pdf)]
+    # Below the last line stands the footer.
+    ends = [text.splitlines()[-2].strip() for text in texts if "Solution." in text]
+    assert len(ends) > 10
+    assert {"Solution.", "What follows:"} & {*ends} == set()
 
 
 def test_a_word_that_is_longer_than_a_line_is_broken(folder):
