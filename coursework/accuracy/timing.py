@@ -55,13 +55,8 @@ def interleaved(
 
     Every call has at least three rounds; one that takes longer than ``budget`` in all has no more than these.
     """
-    repeats, once = [], []
-    for call in calls:
-        call()  # what is made at the first call is not timed
-        start = clock()
-        call()
-        once.append(max(clock() - start, 1e-9))
-        repeats.append(max(1, math.ceil(at_least / once[-1])))
+    once = [_seconds_once(call, at_least) for call in calls]
+    repeats = [max(1, math.ceil(at_least / seconds)) for seconds in once]
     samples: list[list[float]] = [[] for _ in calls]
     for n in range(rounds):
         # Each round begins with another call.
@@ -73,6 +68,22 @@ def interleaved(
                 calls[i]()
             samples[i].append((clock() - start) / repeats[i])
     return [times_of(times) for times in samples]
+
+
+def _seconds_once(call: Callable[[], Any], at_least: float) -> float:
+    """Return about the seconds of one call: of twice as many calls each time, until the clock sees a quarter of ``at_least``.
+
+    A clock may tick more coarsely than it says, as that of processor time does while a profiler samples.
+    """
+    call()  # what is made at the first call is not timed
+    count, taken = 1, 0.0
+    while taken <= 0 or taken < at_least / 4:
+        start = clock()
+        for _ in range(count):
+            call()
+        taken = clock() - start
+        count *= 2
+    return 2 * taken / count
 
 
 def times_of(samples: Sequence[float]) -> Times:

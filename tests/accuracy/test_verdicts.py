@@ -131,6 +131,15 @@ def test_every_call_has_its_turn_in_every_round():
     assert len({own[0] for own in rounds.tolist()}) == 3
 
 
+def test_a_clock_that_ticks_coarsely_makes_no_round_long(monkeypatch):
+    """As that of processor time does while a profiler samples: it says nanoseconds and ticks every four milliseconds."""
+    done = []
+    monkeypatch.setattr("coursework.accuracy.timing.clock", lambda: len(done) * 1e-5 // 4e-3 * 4e-3)
+    (times,) = interleaved([lambda: done.append(1)], 0.02, rounds=9)  # a call of 10 microseconds, 2000 a round
+    assert times.median == pytest.approx(1e-5, rel=0.5)
+    assert len(done) < 9 * 2000 * 3
+
+
 def test_a_slow_call_is_timed_more_than_once():
     (times,) = interleaved([lambda: sum(range(1000))], 0.0, budget=0.0, rounds=9)
     assert times.rounds == 3
