@@ -103,7 +103,7 @@ class BadInput(CourseworkError, ValueError):
 
 def counted(number: int, noun: str) -> Message:
     """Return ``1 row``, ``2 rows``."""
-    return Message("{number} " + (noun if number == 1 else f"{noun}s"), number=number)
+    return Message("{number} " + noun + "{number:|s}", number=number)
 
 
 def closest(name: str, names: Iterable[str]) -> str | None:

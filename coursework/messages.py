@@ -16,6 +16,8 @@ from pathlib import Path
 from typing import Any
 
 CATALOGUES = Path(__file__).parent / "language" / "messages"
+#: Ending that agrees with a number: ``{rows:|s}`` is empty for one row and ``s`` for several.
+_AGREEMENT = re.compile(r"\{(\w+):(\w*)\|(\w*)\}")
 _PLACES = tuple(f"note{number}" for number in range(1, 100))
 _NARROW = "\N{NARROW NO-BREAK SPACE}"
 _language: ContextVar[str] = ContextVar("language of messages", default="en")
@@ -57,7 +59,8 @@ class Message(str):
     """English text that knows its template and the values in it, so that it can be printed in another language.
 
     ``Message("{file} has {count} lines", file=path, count=3)``: without values the template is the text, braces and all. A value
-    may be a message or an error: it is translated with the whole.
+    may be a message or an error: it is translated with the whole. ``line{count:|s}`` agrees with a number, or with a message
+    such as ``3 lines``, by the rule of the language.
     """
 
     template: str
@@ -117,8 +120,15 @@ def _filled(template: str, values: Mapping[str, Any], lang: str) -> str:
     text = translations(lang).get(template, template)
     if not values:
         return text
+    text = _AGREEMENT.sub(lambda place: place[2 if _is_one(values[place[1]], lang) else 3], text)
     translated = {n: localised(v, lang) if _is_translated(v) else v for n, v in values.items()}
     return text.format(**translated)
+
+
+def _is_one(value: Any, lang: str) -> bool:
+    from coursework.language.numbers import number_form
+
+    return number_form(value.values["number"] if isinstance(value, Message) else value, lang) == "one"
 
 
 def _is_translated(value: object) -> bool:

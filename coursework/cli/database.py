@@ -182,7 +182,7 @@ def _tell_changes(now: GradedNow, store: Store, number: int) -> int:
     for row in rejected[:_TOLD]:
         warn("{source}: {reason}", source=row.place, reason=row.reason)
     if len(rejected) > _TOLD:
-        warn("and {count} more rejected rows: grade with --out DIR", count=len(rejected) - _TOLD)
+        warn("and {count} more rejected row{count:|s}: grade with --out DIR", count=len(rejected) - _TOLD)
     with store.reading() as connection:
         waits = answers_waiting(connection, number)
     if waits:

@@ -234,7 +234,7 @@ def grade(
 def _print_gradebook(book: Gradebook, out: Path) -> int:
     """Say what a folder of marks holds."""
     for line in book.seen:
-        click.echo(one_line(line))
+        click.echo(one_line(localised(line)))
     say(
         "{rows}: {marked} marked, {rejected} rejected{blanks}; see {out}",
         rows=counted(book.rows_in, "row"),
@@ -251,18 +251,12 @@ def _print_gradebook(book: Gradebook, out: Path) -> int:
         )
     if book.waiting:
         say(
-            "{count} answer waits to be marked by a person: give points in {file}, and grade again"
-            if book.waiting == 1
-            else "{count} answers wait to be marked by a person: give points in {file}, and grade again",
+            "{count} answer{count:|s} wait{count:s|} to be marked by a person: give points in {file}, and grade again",
             count=book.waiting,
             file=out / "decisions.csv",
         )
     if book.changes:
-        say(
-            "{count} mark changed; see {file}" if book.changes == 1 else "{count} marks changed; see {file}",
-            count=book.changes,
-            file=out / "changes.csv",
-        )
+        say("{count} mark{count:|s} changed; see {file}", count=book.changes, file=out / "changes.csv")
     _print_warnings(book)
     for fault in book.faults:
         click.echo(f"coursework: {one_line(localised(fault))}", err=True)
@@ -335,9 +329,7 @@ def _told_standing(book: Gradebook, marks: Path, out: Path) -> int:
     say("{marks} taken from {source}; see {out}", marks=counted(book.rows_in, "mark"), source=marks, out=out)
     if book.changes:
         say(
-            "{count} mark was changed by hand; see {file}"
-            if book.changes == 1
-            else "{count} marks were changed by hand; see {file}",
+            "{count} mark{count:|s} {count:was|were} changed by hand; see {file}",
             count=book.changes,
             file=out / "changes.csv",
         )

@@ -153,9 +153,7 @@ def _print_scan_book(book: ScanBook, out: Path) -> int:
     )
     if book.waiting:
         say(
-            "{count} place waits for a person: open {page}"
-            if book.waiting == 1
-            else "{count} places wait for a person: open {page}",
+            "{count} place{count:|s} wait{count:s|} for a person: open {page}",
             count=book.waiting,
             page=out / "queue" / "index.html",
         )

@@ -26,7 +26,7 @@ def stored_exam(course: Course, store: Store, assignment_id: int) -> Exam:
         raise BadInput("nothing of it is marked yet: coursework grade SUBMISSIONS… --db URL")
     if work.changed:
         raise BadInput(
-            "{count} sheets came or changed since the last marking: first coursework grade --db …",
+            "{count} sheet{count:|s} came or changed since the last marking: first coursework grade --db …",
             count=len(work.changed),
         )
     sheets = Sheets(work.sheets.sheets, list(work.sheets.rejected), list(work.sheets.warnings))

@@ -74,7 +74,7 @@ class EditedMarks:
             if len(rejected) == 1:
                 raise BadInput("{file}: {reason}; nothing is written", file=first.place, reason=first.reason)
             raise BadInput(
-                "{file}: {reason} (and {count} lines more); nothing is written",
+                "{file}: {reason} (and {count} line{count:|s} more); nothing is written",
                 file=first.place,
                 reason=first.reason,
                 count=len(rejected) - 1,

@@ -315,7 +315,7 @@ def nothing_in(submissions: Sequence[Path], rejected: Sequence[Rejected]) -> str
     if len(rejected) == 1:
         return Message("{nothing}: {file}: {reason}", nothing=message, file=first.place, reason=first.reason)
     return Message(
-        "{nothing} ({count} rows rejected; the first one): {file}: {reason}",
+        "{nothing} ({count} row{count:|s} rejected; the first one): {file}: {reason}",
         nothing=message,
         count=len(rejected),
         file=first.place,

@@ -11,7 +11,7 @@ from functools import lru_cache
 from typing import TYPE_CHECKING, TypeAlias
 
 from coursework.figures.text import SIZE, LetterRun
-from coursework.language.numbers import localise, plain
+from coursework.language.numbers import localise, number_form, plain
 from coursework.language.words import words
 from coursework.markup.formula_tree import LETTERS, tokens
 from coursework.markup.formulas import quantity_formula
@@ -158,10 +158,8 @@ def title(sheet: Sheet) -> str:
 
 
 def points_text(points: float, lang: str) -> str:
-    """``0,5 point``, ``2 points``: French is singular below two, English at one only."""
-    singular = points < 2 if words(lang)["numbers"]["one_below_two"] else points == 1
-    word = words(lang)["sheet"]["points"]["one" if singular else "many"]
-    return f"{points_number(points, lang)} {word}"
+    """``0,5 point``, ``2 points``."""
+    return f"{points_number(points, lang)} {words(lang)['sheet']['points'][number_form(points, lang)]}"
 
 
 def points_number(points: float, lang: str) -> str:

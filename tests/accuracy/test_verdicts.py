@@ -135,7 +135,8 @@ def test_a_clock_that_ticks_coarsely_makes_no_round_long(monkeypatch):
     """As that of processor time does while a profiler samples: it says nanoseconds and ticks every four milliseconds."""
     done = []
     monkeypatch.setattr("coursework.accuracy.timing.clock", lambda: len(done) * 1e-5 // 4e-3 * 4e-3)
-    (times,) = interleaved([lambda: done.append(1)], 0.02, rounds=9)  # a call of 10 microseconds, 2000 a round
+    # A call of 10 microseconds: 2000 of them a round.
+    (times,) = interleaved([lambda: done.append(1)], 0.02, rounds=9)
     assert times.median == pytest.approx(1e-5, rel=0.5)
     assert len(done) < 9 * 2000 * 3
 

@@ -266,3 +266,32 @@ def test_the_help_of_every_command_and_option_is_translated(lang, capsys):
             commands.main(arguments, prog_name="coursework", standalone_mode=False)
     shown = capsys.readouterr().out
     assert not re.search(r"Usage:|Commands|FILE|DIRECTORY|Show |Options:|\[default", shown)
+
+
+def test_words_agree_with_a_number_by_the_rule_of_the_language():
+    """French is singular below two, English at one only."""
+    template = "{rows}: {marked} marked, {rejected} rejected{blanks}; see {out}"
+
+    def french(number):
+        values = {
+            "rows": counted(number, "row"),
+            "marked": number,
+            "rejected": number,
+            "blanks": "",
+            "out": "m",
+        }
+        return localised(Message(template, **values), "fr").replace("\N{NARROW NO-BREAK SPACE}", " ")
+
+    assert [french(number) for number in (0, 1, 2)] == [
+        "0 ligne : 0 corrigée, 0 rejetée ; voir m",
+        "1 ligne : 1 corrigée, 1 rejetée ; voir m",
+        "2 lignes : 2 corrigées, 2 rejetées ; voir m",
+    ]
+    waits = "{count} place{count:|s} wait{count:s|} for a person: open {page}"
+    assert [str(Message(waits, count=count, page="p"))[:15] for count in (0, 1, 2)] == [
+        "0 places wait f",
+        "1 place waits f",
+        "2 places wait f",
+    ]
+    left_out = Message("{lines} without a student left out: {named}", lines=counted(1, "line"), named="x")
+    assert localised(left_out, "fr").startswith("1 ligne sans étudiant écartée")

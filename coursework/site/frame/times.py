@@ -7,6 +7,7 @@ from datetime import UTC, datetime, timedelta
 from markupsafe import Markup
 
 from coursework.issuing.papers import date_text
+from coursework.language.numbers import number_form
 from coursework.language.words import words
 
 _FORM = "%Y-%m-%dT%H:%M"  #: format of a form field
@@ -62,11 +63,7 @@ def length_text(length: timedelta, lang: str) -> str:
     largest = [(name, count) for name, count in counts if count][:2]
     if not largest:
         largest = [("second", seconds)]
-    below_two = words(lang)["numbers"]["one_below_two"]
-    return " ".join(
-        str(texts[name]["one" if (count < 2 if below_two else count == 1) else "many"]).format(count)
-        for name, count in largest
-    )
+    return " ".join(str(texts[name][number_form(count, lang)]).format(count) for name, count in largest)
 
 
 def field_text(at: datetime | None) -> str:

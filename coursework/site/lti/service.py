@@ -20,6 +20,7 @@ from starlette.responses import JSONResponse, RedirectResponse, Response
 from starlette.routing import Route
 
 from coursework.errors import BadInput
+from coursework.language.numbers import number_form
 from coursework.language.words import words
 from coursework.platforms.lti import deep_linking
 from coursework.platforms.lti.class_list import as_csv
@@ -424,11 +425,7 @@ class _Service:
         launch, texts = lti_request.launch, words(lti_request.lang)["lti"]["pick"]
         if launch.picking is None:
             raise LTIRefusal("page", 404, "picking")
-        ready = texts["return_says"][
-            "one"
-            if len(items) == 1 or (not items and words(lti_request.lang)["numbers"]["one_below_two"])
-            else "many"
-        ]
+        ready = texts["return_says"][number_form(len(items), lti_request.lang)]
         request.state.forms = [origin(launch.picking.return_url)]
         request.state.scripts = [self.host.pages.digest("platform/_lti_return.js")]
         names = {

@@ -25,6 +25,7 @@ from coursework.gradebook.placing import placed_sheets
 from coursework.gradebook.rows import AnswerRow
 from coursework.issuing.assignment import Assignment, text_in
 from coursework.issuing.students import folded
+from coursework.language.numbers import number_form
 from coursework.language.words import words
 from coursework.messages import as_message, localised
 from coursework.platforms.lti.class_list import students
@@ -223,9 +224,8 @@ class SiteHost:
         if left is None:
             rules.append(str(texts["tries_free"]))
         elif state.phase.takes:
-            is_one = left < 2 if words(request.lang)["numbers"]["one_below_two"] else left == 1
             rules.append(
-                str(texts["tries_left"]["one" if is_one else "many"]).format(left)
+                str(texts["tries_left"][number_form(left, request.lang)]).format(left)
                 if left
                 else texts["no_try_left"]
             )
