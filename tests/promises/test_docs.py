@@ -310,7 +310,18 @@ def test_the_new_course_that_is_shown_is_the_one_printed(tmp_path, monkeypatch, 
 OPTION_OR_KEY = re.compile(r"--[a-z][\w-]*|(?<=^\| )`[\w./]+`", re.MULTILINE)
 
 
-@each_row("name", ["first_hour", "build_and_mark", "after_the_exam", "assignments", "mechanism_files"])
+@each_row(
+    "name",
+    [
+        "first_hour",
+        "build_and_mark",
+        "after_the_exam",
+        "assignments",
+        "mechanism_files",
+        "platforms/moodle",
+        "platforms/gradebooks",
+    ],
+)
 def test_a_french_page_tells_of_every_option_file_and_key_of_the_english_one(name):
     english, french = (
         {*OPTION_OR_KEY.findall((DOCS / f"{name}{end}").read_text("utf-8"))} for end in (".md", ".fr.md")
