@@ -6,12 +6,12 @@ import re
 import numpy as np
 import pypdfium2
 import pytest
-from paper_samples import COURSE, heading, paper
+from paper_samples import COURSE, heading, paper, solution
 from pdf_links import wrong_references
 
 from coursework.errors import BadStatement
 from coursework.language.words import words
-from coursework.rendering import pdf
+from coursework.rendering import pdf, views
 from coursework.rendering.renderer import renderer_of
 from coursework.selfstudy.workbook.binding import bound
 
@@ -24,6 +24,21 @@ def white(page) -> float:
     grey = page.render(scale=0.8, grayscale=True).to_numpy()
     inked = np.flatnonzero((grey.reshape(grey.shape[:2]) < 252).any(axis=1))
     return float(np.diff(inked).max() / len(grey)) if len(inked) > 1 else 1.0
+
+
+def covered(page) -> int:
+    """How many letters have no ink in the lower third of their height, since something white lies on them."""
+    scale, height, text = 2, page.get_height(), page.get_textpage()
+    ink = page.render(scale=scale, grayscale=True).to_numpy()
+    ink = ink.reshape(ink.shape[:2]) < 200
+    count = 0
+    for at in range(text.count_chars()):
+        left, foot, right, top = text.get_charbox(at)
+        if text.get_text_range(at, 1) not in "aeuonrtmscdhbil" or right - left < 1.5 or top - foot < 3:
+            continue
+        upper, lower = (int(scale * (height - y)) for y in (foot + (top - foot) / 3, foot))
+        count += not ink[upper : lower + 1, int(scale * left) : int(scale * right) + 1].any()
+    return count
 
 
 def places(pages, said: str) -> list[tuple[int, float]]:
@@ -74,8 +89,23 @@ def test_the_whole_book_has_few_white_pages_and_each_reference_names_its_page(la
     if lang == "en":
         texts = [page.get_textpage().get_text_bounded() for page in pypdfium2.PdfDocument(volumes[0])]
         assert list(led_astray(texts)) == []
+    assert {
+        n: letters
+        for volume in volumes
+        for n, page in enumerate(pypdfium2.PdfDocument(volume), 1)
+        if (letters := covered(page)) > 1
+    } == {}
     found = [sum(white(page) > MOST for page in pypdfium2.PdfDocument(volume)) for volume in volumes]
     assert all(count <= most for count, most in zip(found, WHITE[lang], strict=True)), found
+
+
+def test_a_drawing_to_scale_lies_on_none_of_the_words_before_it(monkeypatch):
+    """As solutions of a book print it, where it may move to the next page."""
+    context = views.context
+    monkeypatch.setattr(views, "context", lambda *of, **how: context(*of, **how) | {"moving": "-"})
+    solved = solution(heading("fr"), ("velocity_polygon", "four_bar_motion"))
+    pages = pypdfium2.PdfDocument(RENDERER.pdf(solved))
+    assert {n: letters for n, page in enumerate(pages, 1) if (letters := covered(page)) > 1} == {}
 
 
 def led_astray(texts):
