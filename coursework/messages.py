@@ -19,6 +19,7 @@ CATALOGUES = Path(__file__).parent / "language" / "messages"
 #: Ending that agrees with a number: ``{rows:|s}`` is empty for one row and ``s`` for several.
 _AGREEMENT = re.compile(r"\{(\w+):(\w*)\|(\w*)\}")
 _PLACES = tuple(f"note{number}" for number in range(1, 100))
+_ONE_BELOW_TWO = ("fr",)  #: languages whose nouns are singular below two
 _NARROW = "\N{NARROW NO-BREAK SPACE}"
 _language: ContextVar[str] = ContextVar("language of messages", default="en")
 
@@ -46,6 +47,11 @@ def translations(lang: str) -> Mapping[str, str]:
         return {}
     tables = tomllib.loads(path.read_text("utf-8"))
     return {template: _typeset(text, lang) for table in tables.values() for template, text in table.items()}
+
+
+def number_form(number: float, lang: str) -> str:
+    """Return ``"one"`` if the noun of so many is singular, otherwise ``"many"``: French is singular below two, English at one only."""
+    return "one" if (number < 2 if lang in _ONE_BELOW_TWO else number == 1) else "many"
 
 
 def _typeset(text: str, lang: str) -> str:
@@ -120,15 +126,13 @@ def _filled(template: str, values: Mapping[str, Any], lang: str) -> str:
     text = translations(lang).get(template, template)
     if not values:
         return text
-    text = _AGREEMENT.sub(lambda place: place[2 if _is_one(values[place[1]], lang) else 3], text)
+    text = _AGREEMENT.sub(lambda place: place[2 if _form(values[place[1]], lang) == "one" else 3], text)
     translated = {n: localised(v, lang) if _is_translated(v) else v for n, v in values.items()}
     return text.format(**translated)
 
 
-def _is_one(value: Any, lang: str) -> bool:
-    from coursework.language.numbers import number_form
-
-    return number_form(value.values["number"] if isinstance(value, Message) else value, lang) == "one"
+def _form(value: Any, lang: str) -> str:
+    return number_form(value.values["number"] if isinstance(value, Message) else value, lang)
 
 
 def _is_translated(value: object) -> bool:

@@ -17,11 +17,6 @@ def localise(number: str, lang: str) -> str:
     return number.replace("-", MINUS).replace(".", style["decimal"])
 
 
-def number_form(number: float, lang: str) -> str:
-    """Return ``"one"`` if the noun of so many is singular, otherwise ``"many"``: French is singular below two, English at one only."""
-    return "one" if (number < 2 if words(lang)["numbers"]["one_below_two"] else number == 1) else "many"
-
-
 #: A hyphen before a number, and one between spaces before a number; what stands between dollar signs sets its own.
 _HYPHEN = re.compile(r"\$+[^$]*\$+|(?<![\w.)\]-])-(?=\.?\d)|(?<=\S )-(?= \.?\d)")
 

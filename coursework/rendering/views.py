@@ -11,12 +11,13 @@ from functools import lru_cache
 from typing import TYPE_CHECKING, TypeAlias
 
 from coursework.figures.text import SIZE, LetterRun
-from coursework.language.numbers import localise, number_form, plain
+from coursework.language.numbers import localise, plain
 from coursework.language.words import words
 from coursework.markup.formula_tree import LETTERS, tokens
 from coursework.markup.formulas import quantity_formula
 from coursework.markup.line import to_line
 from coursework.markup.markdown import to_text
+from coursework.messages import number_form
 from coursework.sheets.sheet import Answer, AnswerSheet, FeedbackSheet, GivenValue, Handout, Question, Step
 
 if TYPE_CHECKING:

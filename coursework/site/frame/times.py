@@ -7,8 +7,8 @@ from datetime import UTC, datetime, timedelta
 from markupsafe import Markup
 
 from coursework.issuing.papers import date_text
-from coursework.language.numbers import number_form
 from coursework.language.words import words
+from coursework.messages import number_form
 
 _FORM = "%Y-%m-%dT%H:%M"  #: format of a form field
 

@@ -20,8 +20,8 @@ from starlette.responses import JSONResponse, RedirectResponse, Response
 from starlette.routing import Route
 
 from coursework.errors import BadInput
-from coursework.language.numbers import number_form
 from coursework.language.words import words
+from coursework.messages import number_form
 from coursework.platforms.lti import deep_linking
 from coursework.platforms.lti.class_list import as_csv
 from coursework.platforms.lti.key_sets import KeySets

@@ -25,9 +25,8 @@ from coursework.gradebook.placing import placed_sheets
 from coursework.gradebook.rows import AnswerRow
 from coursework.issuing.assignment import Assignment, text_in
 from coursework.issuing.students import folded
-from coursework.language.numbers import number_form
 from coursework.language.words import words
-from coursework.messages import as_message, localised
+from coursework.messages import as_message, localised, number_form
 from coursework.platforms.lti.class_list import students
 from coursework.platforms.lti.launch import Launch
 from coursework.platforms.lti.refusal import LTIRefusal
