@@ -7,6 +7,7 @@ import subprocess
 import sys
 import threading
 import time
+from functools import cache
 from pathlib import Path
 
 import httpx
@@ -123,7 +124,8 @@ def test_one_process_finds_variants_ahead_and_ends_with_the_first(tmp_path, work
     with Served(tmp_path, "serve", "--port", "0", "--workers", workers) as site:
         until(lambda: len(site.workers) == (workers if workers > 1 else 0))
         (filler,) = until(lambda: site.fillers)
-        until(lambda: len(found_ahead(tmp_path)) > 1)
+        # It is the last to have a processor: with other tests beside it that takes minutes.
+        until(lambda: len(found_ahead(tmp_path)) > 1, 300)
         assert site.fillers == [filler]
         site.kill()
         until(lambda: not lives(filler))
@@ -180,11 +182,17 @@ def test_no_process_is_begun_where_all_was_found(tmp_path):
         assert not site.fillers
 
 
+@cache
+def versions():
+    course = open_course()
+    return {name: course[name].version for name in course}
+
+
 def found_ahead(folder):
-    course, store = open_course(), Store(str(folder / "coursework.db"))
+    store = Store(str(folder / "coursework.db"))
     try:
         with store.reading() as connection:
-            return pools(connection, {name: course[name].version for name in course})
+            return pools(connection, versions())
     finally:
         store.close()
 
