@@ -12,7 +12,6 @@ from coursework.course.course import Course
 from coursework.database.coded import by_code, coded_graded, coded_row, coded_sheets, codes_of
 from coursework.database.instructor_queries import AssignmentOverview, Placing, SiteSubmissions, Stamp
 from coursework.errors import closest
-from coursework.gradebook.adjustments import NEUTRAL
 from coursework.gradebook.book import Gradebook, Result, Sitting, results
 from coursework.gradebook.class_marking import rejecting
 from coursework.gradebook.decisions import Decisions
@@ -26,8 +25,11 @@ from coursework.gradebook.waiting import (
     AnswerGroup,
     AnswerToReview,
     Measure,
+    SheetOfStudent,
     groups,
     margins_of,
+    sheet_of_student,
+    undecided,
 )
 from coursework.issuing.issued import Issued
 from coursework.issuing.students import namesakes
@@ -160,7 +162,7 @@ class ClassState:
         part.__dict__["presence"] = {self.shown(name): its for name, its in self.presence.items()}
         graded = by_code(self.graded, codes)
         part.__dict__["graded"] = {key: coded_graded(one, codes) for key, one in graded.items()}
-        part.__dict__["adjusted"] = self.adjusted.by_codes(codes)
+        part.__dict__["adjusted"], part.__dict__["open"] = self.adjusted.by_codes(codes), self.open
         part.__dict__["codes"], part.__dict__["coded"] = codes, part
         part.__dict__["rejected"] = tuple(
             replace(
@@ -273,29 +275,22 @@ class ClassState:
         return groups(sheets, self.measures, self.questions, self.drawn)
 
     @cached_property
-    def measures(self) -> dict[tuple[str, str, int, int], Measure]:
-        """Measures by which sheets are compared, by student, exercise, seed and attempt."""
+    def measures(self) -> dict[SheetOfStudent, Measure]:
+        """Measures by which sheets are compared."""
         return {
-            (*sheet[:3], self.machine[sheet].sitting): self.measured[number]
+            sheet_of_student(self.machine[sheet]): self.measured[number]
             for sheet, number in self.numbers.items()
             if number in self.measured
         }
 
     @cached_property
     def open(self) -> dict[str, OpenGroup]:
-        """Groups with undecided answers, by id, in order; including those that are shown only on request. Nothing of a
-        question that counts for nobody."""
-        open_groups, statuses = {}, self.decisions.adjustments.statuses
-        for group in self.groups:
-            if statuses.get((group.exercise, group.part)) == NEUTRAL:
-                continue
-            members = tuple(answer for answer in group.members if not self.is_decided(answer))
-            if members:
-                open_groups[group.id] = OpenGroup(group, members)
-        return open_groups
-
-    def is_decided(self, answer: AnswerToReview) -> bool:
-        return self.decisions.standing(answer.sheet, answer.mark) is not None
+        """Groups with undecided answers, by id, in order; including those that are shown only on request."""
+        current = {sheet_of_student(graded): graded for graded in self.graded.values()}
+        return {
+            group.id: OpenGroup(group, members)
+            for group, members in undecided(self.groups, self.decisions, current)
+        }
 
     @property
     def waiting(self) -> int:

@@ -44,9 +44,12 @@ from coursework.gradebook.waiting import (
     AnswerGroup,
     AnswerToReview,
     Measure,
+    SheetOfStudent,
     groups,
     margins_of,
     measures,
+    sheet_of_student,
+    undecided,
     written,
 )
 from coursework.issuing.assignment import Assignment
@@ -166,7 +169,7 @@ class Exam:
     decisions: Decisions
     rejected: Sequence[Rejected] = ()
     charged: Mapping[Sitting, float] = field(default_factory=dict)
-    measured: Mapping[tuple[str, str, int, int], Measure] | None = None
+    measured: Mapping[SheetOfStudent, Measure] | None = None
     presence: Mapping[str, str] = field(default_factory=dict)  #: by student, where somebody stated it
     shown: Callable[[str], str] = str  #: name or code by which a student is named in what is told
 
@@ -176,6 +179,14 @@ class Exam:
     def decided(self) -> list[Graded]:
         """Sheets with the decisions on answers, and without adjustments."""
         return [self.decisions.apply(graded) for graded in self.machine]
+
+    @cached_property
+    def adjusted(self) -> list[Graded]:
+        """Sheets with the decisions and adjustments."""
+        return self._adjusted(self.decisions, self.decided)
+
+    def _adjusted(self, decisions: Decisions, sheets: Sequence[Graded]) -> list[Graded]:
+        return decisions.adjustments.applied(sheets, self.issued, margins_of(self.course, self.issued))
 
     def _results(self, sheets: Iterable[Graded], adjustments: Adjustments) -> dict[str, Result]:
         book = Gradebook(adjustments.on(self.issued), rejected=list(self.rejected), charged=self.charged)
@@ -187,15 +198,12 @@ class Exam:
         """Return the result of each student with these decisions, by default with those that stand."""
         if decisions is None:
             return self._standing_results
-        return self._results_with(decisions, [decisions.apply(graded) for graded in self.machine])
+        sheets = self._adjusted(decisions, [decisions.apply(graded) for graded in self.machine])
+        return self._results(sheets, decisions.adjustments)
 
     @cached_property
     def _standing_results(self) -> dict[str, Result]:
-        return self._results_with(self.decisions, self.decided)
-
-    def _results_with(self, decisions: Decisions, sheets: Sequence[Graded]) -> dict[str, Result]:
-        adjusted = decisions.adjustments.applied(sheets, self.issued, margins_of(self.course, self.issued))
-        return self._results(adjusted, decisions.adjustments)
+        return self._results(self.adjusted, self.decisions.adjustments)
 
     def distribution(self, decisions: Decisions | None = None) -> Distribution:
         """Return the marks of those who handed something in or were present, by the scale with these decisions."""
@@ -242,11 +250,11 @@ class Exam:
     # --------------------------------------------------------------------- left
 
     @cached_property
-    def measures(self) -> Mapping[tuple[str, str, int, int], Measure]:
-        """Measures by which sheets are compared, by student, exercise, seed and attempt."""
+    def measures(self) -> Mapping[SheetOfStudent, Measure]:
+        """Measures by which sheets are compared."""
         if self.measured is not None:
             return self.measured
-        keys = [(*graded[:3], graded.sitting) for graded in self.machine]
+        keys = map(sheet_of_student, self.machine)
         return dict(zip(keys, measures(self.course, self.issued, self.machine), strict=True))
 
     @cached_property
@@ -302,18 +310,10 @@ class Exam:
         """Groups of answers to review, each with those of its answers on which nobody has decided."""
         drawn = drawn_questions(self.course, self.issued)
         found = groups(self.machine, self.measures, self.questions, drawn)
-        waits = ((group, tuple(one for one in group.members if not self._is_decided(one))) for group in found)
-        statuses = self.decisions.adjustments.statuses
+        current = {sheet_of_student(graded): graded for graded in self.adjusted}
         return [
-            (group, members)
-            for group, members in waits
-            if members
-            and group.why not in SHOWN_ON_REQUEST
-            and statuses.get((group.exercise, group.part)) != NEUTRAL
+            one for one in undecided(found, self.decisions, current) if one[0].why not in SHOWN_ON_REQUEST
         ]
-
-    def _is_decided(self, answer: AnswerToReview) -> bool:
-        return self.decisions.standing(answer.sheet, answer.mark) is not None
 
     @cached_property
     def cards(self) -> dict[str, tuple[int, int]]:

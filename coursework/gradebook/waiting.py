@@ -16,8 +16,9 @@ from coursework.course.course import Course
 from coursework.course.key_batch import keys_of
 from coursework.course.marking_rules import Rules
 from coursework.course.variant import Variant
-from coursework.gradebook.adjustments import Margins
+from coursework.gradebook.adjustments import NEUTRAL, Margins
 from coursework.gradebook.class_marking import rules_of
+from coursework.gradebook.decisions import Decisions
 from coursework.gradebook.graded_sheet import Graded
 from coursework.issuing.issued import Issued
 from coursework.marking.margins import half_widths_off
@@ -29,6 +30,8 @@ JUST = 0.9  #: of the accepted margin, beyond which a right answer is just insid
 OFTEN = 3  #: students who wrote the same wrong answer, before it waits
 OFTEN_SHARE = 0.1  #: of those who answered the question
 LONGEST = 2000  #: characters by which texts are compared
+
+SheetOfStudent = tuple[str, str, int, int]  #: student, exercise, seed and sitting
 
 #: Why an answer may be looked at, in the order in which they are shown.
 WHY = ("unreadable", "drawn", "open", "unit", "near", "often", "just")
@@ -121,18 +124,18 @@ def _known(margins: Mapping[str, float | None]) -> dict[str, float]:
 
 
 def groups(
-    graded: Iterable[Graded], measured: Mapping[tuple[str, str, int, int], Measure], order: Sequence[tuple[str, str]],
+    graded: Iterable[Graded], measured: Mapping[SheetOfStudent, Measure], order: Sequence[tuple[str, str]],
     drawn: frozenset[tuple[str, str]] = frozenset(),
 ) -> list[AnswerGroup]:  # fmt: skip
     """Return the answers that may be reviewed, question by question in ``order`` (exercise and part), then by
     reason, the largest groups first.
 
-    ``measured`` is by student, exercise, seed and sitting; ``drawn`` are the questions that are answered by a drawing.
+    ``drawn`` are the questions that are answered by a drawing.
     """
     members_by_key: dict[tuple[str, ...], list[AnswerToReview]] = {}
     answered: dict[tuple[str, str], set[str]] = {}
     for graded_sheet in graded:
-        measure = measured.get((*graded_sheet[:3], graded_sheet.sitting), NOTHING)
+        measure = measured.get(sheet_of_student(graded_sheet), NOTHING)
         for part, mark in graded_sheet.lines.items():
             if mark.verdict == "missing":
                 continue
@@ -152,6 +155,40 @@ def groups(
             WHY.index(g.why),
             -len(g.members),
         ),
+    )
+
+
+def undecided(
+    groups: Iterable[AnswerGroup], decisions: Decisions, current: Mapping[SheetOfStudent, Graded]
+) -> Iterator[tuple[AnswerGroup, tuple[AnswerToReview, ...]]]:
+    """Yield groups with those of their answers whose mark a person may still change; none of a question that counts for nobody.
+
+    ``current`` are the sheets with the decisions and adjustments applied: an answer that a wider margin or another price
+    gave all its points waits no more.
+    """
+    statuses = decisions.adjustments.statuses
+    for group in groups:
+        if statuses.get((group.exercise, group.part)) == NEUTRAL:
+            continue
+        members = tuple(
+            answer
+            for answer in group.members
+            if decisions.standing(answer.sheet, answer.mark) is None
+            and not _is_made_good(answer, current[sheet_of_student(answer.sheet)])
+        )
+        if members:
+            yield group, members
+
+
+def sheet_of_student(graded: Graded) -> SheetOfStudent:
+    """Return student, exercise, seed and sitting, by which sheets are found again."""
+    return graded.student, graded.exercise, graded.seed, graded.sitting
+
+
+def _is_made_good(answer: AnswerToReview, now: Graded) -> bool:
+    line = now.lines[answer.mark.part]
+    return answer.mark.points < answer.mark.out_of and (
+        line.verdict == "accepted" or 0 < line.out_of <= line.points
     )
 
 

@@ -136,6 +136,25 @@ def test_nothing_waits_in_a_question_that_counts_for_nobody(desk):
     assert class_now(desk.site, desk.number).waiting == before
 
 
+def test_what_a_wider_margin_makes_right_waits_no_more(tmp_path):
+    """Of two answers near the margin, the one that the wider margin takes in; both are back when it is taken back."""
+    desk = DeskClass(f"sqlite:///{tmp_path}/desk.db", {})
+    desk.hand_in({"Ada": {"rA": desk.at_margin("rA", 1.3)}, "Bo": {"rA": desk.at_margin("rA", 1.8)}})
+
+    def waiting():
+        now = class_now(desk.site, desk.number)
+        on_page = after_exam.exam_of(now).open
+        assert [members for _, members in on_page] == [found.members for found in now.open.values()]
+        return {answer.student for found in now.open.values() for answer in found.members}
+
+    assert waiting() == {"Ada", "Bo"}
+    asked = {"do": "confirm", "kind": "tolerance", "question": QUESTION, "points": "1.5"}
+    desk.browser(TEACHER).fill(f"/desk/{desk.number}/after", asked)
+    assert waiting() == {"Bo"}
+    desk.browser(TEACHER).fill(f"/desk/{desk.number}/after", {"do": "undo", "undo": steps_of(desk)[0].id})
+    assert waiting() == {"Ada", "Bo"}
+
+
 def test_a_scale_gives_marks_to_an_assignment_that_stated_none(desk):
     with desk.site.store.begin() as connection:
         content = issued_content(connection, desk.number)

@@ -290,7 +290,8 @@ def _counts(now: ClassState) -> list[tuple[str, int]]:
 
 def _done(now: ClassState) -> int:
     """Return the number of decided answers."""
-    return sum(now.is_decided(answer) for group in now.groups for answer in group.members)
+    answers = (answer for group in now.groups for answer in group.members)
+    return sum(now.decisions.standing(answer.sheet, answer.mark) is not None for answer in answers)
 
 
 def _can_undo(request: Request, now: ClassState) -> bool:
