@@ -22,7 +22,7 @@ from coursework.cli.options import (
     print_notes,
     writes,
 )
-from coursework.cli.printing import print_json, print_table, progress_bar, say, warn
+from coursework.cli.printing import by_reason, print_json, print_table, progress_bar, say, warn_some
 from coursework.errors import BadInput, closest, counted
 from coursework.messages import Message
 
@@ -178,11 +178,8 @@ def _tell_changes(now: GradedNow, store: Store, number: int) -> int:
         )
     sheets = now.work.sheets
     print_notes(sheets.warnings)
-    rejected = sheets.rejected
-    for row in rejected[:_TOLD]:
-        warn("{source}: {reason}", source=row.place, reason=row.reason)
-    if len(rejected) > _TOLD:
-        warn("and {count} more rejected row{count:|s}: grade with --out DIR", count=len(rejected) - _TOLD)
+    rejected = by_reason((row.place, row.reason) for row in sheets.rejected)
+    warn_some(rejected, Message("what grade --out DIR writes"))
     with store.reading() as connection:
         waits = answers_waiting(connection, number)
     if waits:

@@ -25,7 +25,7 @@ from coursework.cli.options import (
     split_list,
     writes,
 )
-from coursework.cli.printing import print_json, progress_bar, say, warn, warn_some
+from coursework.cli.printing import by_reason, print_json, progress_bar, say, warn, warn_some
 from coursework.errors import BadInput, counted
 from coursework.messages import Message, localised
 from coursework.system.extras import libraries
@@ -260,10 +260,7 @@ def _print_gradebook(book: Gradebook, out: Path) -> int:
     _print_warnings(book)
     for fault in book.faults:
         click.echo(f"coursework: {one_line(localised(fault))}", err=True)
-    warn_some(
-        [Message("{source}: {reason}", source=row.place, reason=row.reason) for row in book.rejected],
-        out / "rejected.csv",
-    )
+    warn_some(by_reason((row.place, row.reason) for row in book.rejected), out / "rejected.csv")
     return FOUND if book.review_count else DONE
 
 

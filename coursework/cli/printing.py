@@ -5,10 +5,9 @@ from __future__ import annotations
 import os
 import sys
 import textwrap
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from itertools import zip_longest
-from pathlib import Path
 from typing import Any
 
 import click
@@ -62,12 +61,27 @@ def problem_of(fault: click.UsageError) -> str:
     return fault.format_message().rstrip(".")
 
 
-def warn_some(lines: Sequence[str], file: Path) -> None:
-    """Print the first lines on the error stream, and how many more stand in a file."""
+def warn_some(lines: Sequence[str], where: object) -> None:
+    """Print the first lines on the error stream, and how many more stand where."""
     for line in lines[:_SHOWN]:
         click.echo(f"coursework: {one_line(localised(line))}", err=True)
     if len(lines) > _SHOWN:
-        warn("and {count} more in {file}", count=len(lines) - _SHOWN, file=file)
+        warn("and {count} more in {where}", count=len(lines) - _SHOWN, where=where)
+
+
+def by_reason(rejected: Iterable[tuple[str, str]]) -> list[str]:
+    """Return a line for each reason, such as a misspelt name, with the first place that it holds for and the number of others."""
+    places: dict[str, list[str]] = {}
+    for place, reason in rejected:
+        places.setdefault(reason, []).append(place)
+    return [
+        Message(
+            "{source}: {reason}",
+            source=Message("{first} and {count} more", first=first, count=len(more)) if more else first,
+            reason=reason,
+        )
+        for reason, (first, *more) in places.items()
+    ]
 
 
 def print_table(rows: Sequence[Mapping[str, Any]], title: str = "") -> None:

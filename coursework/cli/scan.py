@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from coursework.cli.options import DONE, FOUND, FilePath, NeedingExtra, decimal_option, opened, writes
-from coursework.cli.printing import progress_bar, say, warn, warn_some
+from coursework.cli.printing import by_reason, progress_bar, say, warn, warn_some
 from coursework.errors import BadInput, counted
 from coursework.messages import Message, localised
 from coursework.system.extras import libraries
@@ -164,8 +164,5 @@ def _print_scan_book(book: ScanBook, out: Path) -> int:
     if book.unused:
         warn("note: {lines} of typed.csv match no scanned page", lines=counted(book.unused, "line"))
     warn_some([Message("{owner} missing", owner=owner) for owner in book.missing], out / "missing.csv")
-    warn_some(
-        [Message("{source}: {reason}", source=row, reason=why) for row, why in book.rejected],
-        out / "rejected.csv",
-    )
+    warn_some(by_reason(book.rejected), out / "rejected.csv")
     return FOUND if book.needs_a_look else DONE

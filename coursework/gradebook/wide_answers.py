@@ -8,12 +8,12 @@ from typing import NamedTuple
 
 from coursework.gradebook.rows import AnswerRow, PlatformFile, Rejected, RowOrigin
 from coursework.issuing.identity import NUMBER, WHOLE, is_called
-from coursework.issuing.issued import COLUMNS
+from coursework.issuing.issued import COLUMNS, NOT_ASKED
 from coursework.messages import Message
 from coursework.system.tables import as_written
 
 _QUESTION = re.compile(
-    r"(?:[0-9]+(?:\.[0-9]+)?\s+)?(?P<exercise>[^\W\d]\w*)[\s.:]+(?P<part>[^\W\d]\w*)(?:\s*[(\[].*)?"
+    r"(?:[0-9][0-9./]*\s+)?(?P<exercise>[^\W\d]\w*)[\s.:]+(?P<part>[^\W\d]\w*)(?:\s*[(\[].*)?"
 )
 _SEED = re.compile(r"(?P<exercise>[^\W\d]\w*) seed")
 
@@ -61,7 +61,7 @@ def read_wide(
         student = cells[columns.student] if columns.student is not None else ""
         student = student or (ids[0][1] if ids else "")
         for k, (exercise, part) in columns.questions.items():
-            if cells[k]:
+            if cells[k] not in ("", NOT_ASKED):
                 seed = cells[columns.seeds[exercise]] if exercise in columns.seeds else ""
                 where = f"{location}, {header[k].strip()}"
                 origin = RowOrigin(ids) if ids else None

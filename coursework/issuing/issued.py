@@ -623,3 +623,4 @@ def form_rows(issues: Iterable[Issue]) -> Iterator[dict[str, Any]]:
 
 
 COLUMNS = ("student", "exercise", "seed", "part", "answer")
+NOT_ASKED = "—"  #: in a table with a column for each question, what a paper does not ask

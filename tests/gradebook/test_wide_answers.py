@@ -1,12 +1,16 @@
 """Answers typed from paper, a line for each student; and the columns of the roster that come back with the marks."""
 
 import csv
+import re
 
 import pytest
 from small_assignment import table
 
+import coursework
 from coursework.cli import run
 from coursework.gradebook.submissions import read_file
+from coursework.issuing.issuing import Issue
+from coursework.issuing.wide_form import wide_form
 
 ROSTER = "student,number,group,date de naissance,extra_time\nAda,101,A,2005-01-02,yes\nBo,102,B,2005-03-04,\nCy,103,B,2005-05-06,\n"
 
@@ -61,6 +65,46 @@ def test_the_form_of_a_line_for_each_student_is_filled_and_marked(built):
         ("Eve", "line 5, 1.1 crank_pin x (mm)", "no student 'Eve' on the roster"),
         ("Bo", "line 6", "6 cells where the header has 5"),
     ]
+
+
+def test_rows_of_one_misspelt_name_are_one_line_with_their_number(built, capsys, monkeypatch):
+    course, out = built
+    typed, names = out.parent / "typed.csv", ["Adda", "Bo", "Adda", "Zoe", "Adda"]
+    rows = [f"{name},crank_pin,,{part},1" for name in names for part in "xy"]
+    typed.write_text("\n".join(["student,exercise,seed,part,answer", *rows]) + "\n", "utf-8")
+    monkeypatch.setenv("LC_ALL", "fr_FR.UTF-8")
+    grade(course, out, typed)
+    said = [line for line in capsys.readouterr().err.splitlines() if "typed.csv, ligne" in line]
+    counts = [(re.search("«\\W*(Adda|Zoe)", line)[1], re.findall("et ([0-9]+) autre", line)) for line in said]
+    assert counts == [("Adda", ["5"]), ("Zoe", ["1"])]
+    assert len(table(out / "marks" / "rejected.csv")) == 8
+
+
+def test_a_title_has_every_number_of_its_question_and_what_a_paper_does_not_ask_is_dashed(tmp_path):
+    """Papers that ask a choice or an angle in the same place, and another number of questions before the last ones."""
+    course = coursework.open_course()
+    exercise = course["slotted_mechanism"]
+    variants = {f"S{seed}": exercise.variant(seed, "en") for seed in range(12)}
+    asked = {frozenset(variant.part_ids): name for name, variant in variants.items()}
+    assert len(asked) > 1, "these seeds ask the same questions"
+    variants = {name: variants[name] for name in asked.values()}
+    issues = [Issue(name, variant, ("en",), name) for name, variant in variants.items()]
+    columns, rows = wide_form(issues)
+    titles = [title for title in columns if "slotted_mechanism " in title and not title.endswith("seed")]
+    assert len({*columns}) == len(columns)
+    for row in rows:
+        parts = variants[row["student"]].part_ids
+        on_paper = {part: f"1.{number}" for number, part in enumerate(parts, 1)}
+        for title in titles:
+            numbers, _, part = title.split(" (")[0].split(" ")
+            assert (row[title] == "—") == (part not in on_paper)
+            assert part not in on_paper or on_paper[part] in numbers.split("/")
+    path = tmp_path / "typed.csv"
+    filled = [[row[title] or "7" for title in columns] for row in rows]
+    with path.open("w", newline="", encoding="utf-8") as file:
+        csv.writer(file).writerows([columns, *filled])
+    read = {(row.student, row.part) for row in read_file(path)}
+    assert read == {(name, part) for name, variant in variants.items() for part in variant.part_ids}
 
 
 def test_other_tables_are_not_taken_for_wide_ones(tmp_path):
