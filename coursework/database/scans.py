@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 import base64
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from datetime import datetime
 from typing import Any, NamedTuple
 
-from sqlalchemy import Connection, insert, select, update
+from sqlalchemy import Connection, Row, insert, select, update
 
 from coursework.database.store import insert_unless_there
 from coursework.database.tables import scanned, typed
-from coursework.scanning.typed import Typed
+from coursework.scanning.typed import PAGE, Typed
 
 
 class ScannedPage(NamedTuple):
@@ -64,10 +64,36 @@ def put_typed(connection: Connection, assignment_id: int, text: Typed, by: str, 
 def typed_texts(connection: Connection, assignment_id: int) -> list[Typed]:
     """Return the current texts: the last of each place, in the order in which they were typed, without those
     withdrawn."""
-    columns = [typed.c[name] for name in Typed._fields]
+    return [Typed(*row[: len(Typed._fields)]) for row in _current(connection, assignment_id)]
+
+
+def last_typed(connection: Connection, assignment_id: int, by: str) -> list[Typed]:
+    """Return the current texts that a person typed last, all in one request."""
+    own = [row for row in _current(connection, assignment_id) if row.by == by]
+    last = max((row.made for row in own), default=None)
+    return [Typed(*row[: len(Typed._fields)]) for row in own if row.made == last]
+
+
+def withdraw_typed(
+    connection: Connection, assignment_id: int, texts: Sequence[Typed], by: str, made: datetime
+) -> None:
+    """Withdraw texts: their places wait again, and a page that they assigned is nobody's."""
+    rows = [
+        {**text._asdict(), "answer": None, "by": by, "made": made, "assignment_id": assignment_id}
+        for text in texts
+    ]
+    connection.execute(insert(typed), rows)
+    for text in texts:
+        if text.exercise == PAGE:
+            name_scanned(connection, assignment_id, text.part, "")
+
+
+def _current(connection: Connection, assignment_id: int) -> list[Row[Any]]:
+    """Return the columns of :class:`Typed` with who typed them and when: the last of each place that is not withdrawn."""
+    columns = [*(typed.c[name] for name in Typed._fields), typed.c.by, typed.c.made]
     in_order = select(*columns).where(typed.c.assignment_id == assignment_id).order_by(typed.c.id)
-    last: dict[tuple[str, ...], Typed] = {}
-    for row in map(Typed._make, connection.execute(in_order)):
+    last: dict[tuple[str, ...], Row[Any]] = {}
+    for row in connection.execute(in_order):
         key = tuple(row[:5])
         last.pop(key, None)
         last[key] = row

@@ -2,9 +2,11 @@
 
 import pytest
 from desk_class import DeskClass
+from desk_scans import picture, send, told_by_pictures
 from site_browser import chromium, context_of, serious, served, too_wide
 from site_people import TEACHER
 
+from coursework.database.scans import typed_texts
 from coursework.site.desk.class_cache import class_now
 
 pytestmark = pytest.mark.e2e
@@ -21,6 +23,21 @@ def browser():
 @pytest.fixture
 def desk(tmp_path):
     return DeskClass(f"sqlite:///{tmp_path}/desk.db", WRITTEN)
+
+
+@pytest.fixture
+def scanned(tmp_path, monkeypatch):
+    """Three answer pages on which one number each is doubted."""
+    told_by_pictures(monkeypatch)
+    found = DeskClass(f"sqlite:///{tmp_path}/scans.db", {})
+    send(
+        found,
+        *(
+            (f"{n}.png", picture(found, n, rA=f"~1{k}", theta4="~9"))
+            for k, n in enumerate(("Ada", "Bo", "Cy"))
+        ),
+    )
+    return found
 
 
 def next_card(page, press):
@@ -61,6 +78,30 @@ def test_a_thumb_does_on_a_telephone(browser, desk, lang):
         assert all(box["height"] >= 44 and box["y"] + box["height"] <= 844 for box in boxes)
         next_card(page, lambda: page.locator(".acts button.main").tap())
     assert class_now(desk.site, desk.number).results["Bo"].points == 1
+
+
+@pytest.mark.parametrize("device", ["desk", "telephone"])
+def test_pictures_of_a_question_are_confirmed_by_digits_and_enter_and_one_by_one_on_a_telephone(
+    browser, scanned, device
+):
+    with served(scanned) as address:
+        page = context_of(browser, scanned, address, TEACHER, "fr", device).new_page()
+        page.goto(f"{address}/desk/{scanned.number}/scans/queue")
+        assert (too_wide(page), serious(page)) == (0, [])
+        assert page.locator(".cells").is_visible() == (device == "desk")
+        if device == "desk":
+            for key in ("2", "4", "2", "Enter", "Enter"):
+                page.keyboard.press(key)
+        else:
+            page.locator(".beside-together .main").tap()
+        page.locator("#card .told").wait_for()
+        with scanned.site.store.reading() as connection:
+            typed = [one.answer for one in typed_texts(connection, scanned.number)]
+        assert typed == (["10", "42", "12"] if device == "desk" else ["10"])
+        page.get_by_role("button", name="Annuler").locator("visible=true").click()
+        page.get_by_text("Annulé").wait_for()
+        with scanned.site.store.reading() as connection:
+            assert typed_texts(connection, scanned.number) == []
 
 
 def test_it_works_without_script(browser, desk):

@@ -4,53 +4,28 @@ from __future__ import annotations
 
 import html
 import io
-import json
 import re
 import zipfile
 
-import cv2
 import pytest
 from desk_class import EXERCISE, OTHER, STUDENTS, DeskClass, field, told
-from scanned_class import as_picture, read_told
+from desk_scans import as_png, picture, send, told_by_pictures
 from site_people import TEACHER, ZOE
 from sqlalchemy import select
 
 from coursework.database.assignments import issued_content, put_issued
 from coursework.database.erasing import erase
-from coursework.database.scans import pages_scanned
+from coursework.database.scans import pages_scanned, typed_texts
 from coursework.database.tables import person
-from coursework.issuing.answer_papers import answer_papers
 from coursework.site.desk import scan_jobs
 from coursework.site.desk.class_cache import class_now
-from coursework.site.frame import jobs
 
 
 @pytest.fixture
 def desk(tmp_path, monkeypatch):
     """A class that wrote on paper; pictures tell what is on them."""
-    monkeypatch.setattr("coursework.scanning.pages.read_page", read_told)
-    monkeypatch.setattr(jobs, "workers", lambda tasks: 1)
+    told_by_pictures(monkeypatch)
     return DeskClass(f"sqlite:///{tmp_path}/site.db", {})
-
-
-def picture(desk, student, **answers):
-    """A scan of somebody's answer page."""
-    with desk.site.store.reading() as connection:
-        papers = answer_papers(issued_content(connection, desk.number))
-    paper = next(p for p in papers.values() if p.student == student and p.size == "a4")
-    code = paper.pages(desk.site.course)[0].code_text
-    return as_png(json.dumps({"code": code, "answers": answers}).encode())
-
-
-def as_png(data):
-    return cv2.imencode(".png", as_picture(data))[1].tobytes()
-
-
-def send(desk, *files, who=TEACHER):
-    """Send files by their names to the desk."""
-    browser = desk.browser(who)
-    sent = [("scans", (name, data, "application/octet-stream")) for name, data in files]
-    return browser.post(f"/desk/{desk.number}/scans", data={"_seal": browser.seal}, files=sent)
 
 
 def fill(desk, end, who=TEACHER, **texts):
@@ -142,6 +117,40 @@ def test_two_who_look_at_one_card_decide_once(desk):
     card = field(desk.page(TEACHER, "/scans/queue"), "card")
     fill(desk, "/queue", card=card, do="confirm", answer="12")
     assert "already dealt with" in told(fill(desk, "/queue", OTHER, card=card, do="confirm", answer="13"))
+
+
+def values(page, name):
+    return re.findall(rf'name="{name}"[^>]* value="([^"]*)"', page.text.partition("beside-together")[0])
+
+
+def typed(desk):
+    with desk.site.store.reading() as connection:
+        return {(one.student, one.part): one.answer for one in typed_texts(connection, desk.number)}
+
+
+def test_the_cards_of_a_question_are_confirmed_at_once_and_what_was_typed_last_is_undone(desk):
+    """Each is a text of its own; an empty box, and a card that another person has typed meanwhile, are left alone."""
+    students = ("Ada", "Bo", "Cy", "Di")
+    send(
+        desk,
+        *((f"{name}.png", picture(desk, name, rA=f"~1{k}", theta4="~9")) for k, name in enumerate(students)),
+    )
+    page = desk.page(TEACHER, "/scans/queue")
+    cards, answers = values(page, "card"), values(page, "answer")
+    assert answers == ["10", "11", "12", "13"], "the cards of one question, and of no other"
+    fill(desk, "/queue", OTHER, card=cards[3], do="confirm", answer="5")
+    answers[1:3] = ["", "7.5"]
+    done = fill(desk, "/queue", card=cards, answer=answers, do="confirm all")
+    assert "Kept: 2 answers." in told(done)
+    assert "already dealt with" in told(done)
+    assert typed(desk) == {("Ada", "rA"): "10", ("Cy", "rA"): "7.5", ("Di", "rA"): "5"}
+    undone = fill(desk, "/queue", do="undo")
+    assert "Undone (2)" in told(undone)
+    assert typed(desk) == {("Di", "rA"): "5"}
+    assert values(undone, "card") == cards[:3]
+    assert "nothing to undo" in told(fill(desk, "/queue", do="undo"))
+    fill(desk, "/queue", OTHER, do="undo")
+    assert typed(desk) == {}
 
 
 @pytest.mark.parametrize("end", ["picture?page={}", "crop?page={}&field=0"])

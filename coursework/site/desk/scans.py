@@ -1,10 +1,10 @@
 """Instructor's page of scans: they are uploaded, read in the background, and unreadable answers are typed
-card by card."""
+card by card, or several cards of a question at once where the screen is wide."""
 
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -12,7 +12,7 @@ from starlette.responses import Response
 
 from coursework.database.class_state import ClassState
 from coursework.database.permissions import Permission
-from coursework.database.scans import name_scanned, picture_scanned, put_typed
+from coursework.database.scans import last_typed, name_scanned, picture_scanned, put_typed, withdraw_typed
 from coursework.errors import BadInput
 from coursework.language.words import words
 from coursework.scanning.gathering import AnswerCard
@@ -28,6 +28,7 @@ from coursework.site.frame.budgets import DESK_FILES
 from coursework.site.frame.requests import HTTPException, Request, Route, Upload
 
 LONGEST = 4000  #: characters of an answer
+TOGETHER = 9  #: cards of a question that are confirmed at once, each with a digit as its key
 _ID = re.compile(r"[0-9a-f]{16}-\d{4,6}")
 
 
@@ -95,25 +96,50 @@ def _shown(now: ClassState, students: Iterable[str]) -> list[str]:
 
 
 def cards_page(request: Request) -> Response:
-    """Return one card after another; a form decides on one."""
+    """Return one card after another, with those of its question; a form decides on one, or on all whose box is filled in."""
     now = class_here(request)
     scans = class_scans(request.site, now.about.id)
     if not request.is_post:
         return _card_response(request, now, scans, request.query_params.get("at", ""))
-    asked_for, id_ = request.form.text("do"), request.form.text("card")
-    before = [card.id for card in scans.cards]
-    card = next((candidate for candidate in scans.cards if candidate.id == id_), None)
-    if card is None:
-        return _card_response(request, now, scans, "", request.words["scans"]["taken"])
-    if asked_for not in ("confirm", "nothing"):
+    asked_for, before = request.form.text("do"), [card.id for card in scans.cards]
+    if asked_for == "undo":
+        return _undone(request, now)
+    if asked_for not in ("confirm", "confirm all", "nothing"):
         raise HTTPException("bad_request", 400)
-    message = _typed(request, now, scans, card, "" if asked_for == "nothing" else _answer(request, card))
-    later = class_scans(request.site, now.about.id)
-    if not later.cards:
-        message = request.words["scans"]["handed_over"].format(hand_over(request.site, now.about.id, later))
+    by_id, ids = {card.id: card for card in scans.cards}, request.form.texts.get("card", ())[:TOGETHER]
+    there = [by_id[id_] for id_ in ids if id_ in by_id]
+    answers: Sequence[tuple[AnswerCard, str]]
+    if asked_for == "confirm all":
+        boxes = dict(zip(ids, request.form.texts.get("answer", ()), strict=False))
+        answers = [(card, text) for card in there if (text := boxes.get(card.id, "").strip()[:LONGEST])]
+    else:
+        answers = [(c, "" if asked_for == "nothing" else _answer(request, c)) for c in there[:1]]
+    _type(request, now, scans, answers)
+    texts, later = request.words["scans"], class_scans(request.site, now.about.id)
+    message = (
+        texts["kept"] if len(answers) == 1 else texts["kept_several"].format(len(answers)) if there else ""
+    )
+    if len(there) < len(ids):
+        message = f"{message} {texts['taken']}".strip()
+    if answers and not later.cards:
+        message = texts["handed_over"].format(hand_over(request.site, now.about.id, later))
     left = {candidate.id for candidate in later.cards}
-    index = before.index(id_)
+    index = before.index(ids[0]) if ids and ids[0] in before else 0
     at = next((candidate for candidate in (*before[index:], *before[:index]) if candidate in left), "")
+    return _card_response(request, class_now(request.site, now.about.id), later, at, message)
+
+
+def _undone(request: Request, now: ClassState) -> Response:
+    """Withdraw what the person typed last; return the first of its cards."""
+    waited = {card.id for card in class_scans(request.site, now.about.id).cards}
+    with request.site.store.begin() as connection:
+        texts = last_typed(connection, now.about.id, request.actor.name)
+        if texts:
+            withdraw_typed(connection, now.about.id, texts, request.actor.name, request.received_at)
+            request.note(connection, "scan typed undone", assignment=now.about.id, texts=len(texts))
+    said, later = request.words["queue"], class_scans(request.site, now.about.id)
+    message = said["undone"].format(len(texts)) if texts else said["nothing_to_undo"]
+    at = next((card.id for card in later.cards if card.id not in waited), "")
     return _card_response(request, class_now(request.site, now.about.id), later, at, message)
 
 
@@ -127,20 +153,29 @@ def _answer(request: Request, card: AnswerCard) -> str:
     return text
 
 
-def _typed(request: Request, now: ClassState, scans: ClassScans, card: AnswerCard, answer: str) -> str:
-    """Store the typed answer; return the message."""
-    student, exercise, seed, part, coordinate = place_of_card(card)
-    text = Typed(student, exercise, seed, part, coordinate, answer, " ".join(card.pages))
-    code, _, number = answer.partition(" ")
-    if exercise == PAGE and answer and not (code in scans.papers.papers and number in _numbers(scans, code)):
-        raise BadInput(request.words["scans"]["no_page"])
+def _type(
+    request: Request, now: ClassState, scans: ClassScans, answers: Sequence[tuple[AnswerCard, str]]
+) -> None:
+    """Store the texts that are typed on cards, each as a decision of its own. Raises BadInput: there is no such page."""
+    for card, answer in answers:
+        code, _, number = answer.partition(" ")
+        is_page = code in scans.papers.papers and number in _numbers(scans, code)
+        if card.exercise == PAGE and answer and not is_page:
+            raise BadInput(request.words["scans"]["no_page"])
     with request.site.store.begin() as connection:
-        put_typed(connection, now.about.id, text, request.actor.name, request.received_at)
-        if exercise == PAGE and answer:
-            name_scanned(connection, now.about.id, part, scans.papers.papers[code].student)
-        about = {"assignment": now.about.id, "exercise": exercise, "part": part if exercise != PAGE else ""}
-        request.note(connection, "scan typed", **about)
-    return str(request.words["scans"]["kept"])
+        for card, answer in answers:
+            student, exercise, seed, part, coordinate = place_of_card(card)
+            text = Typed(student, exercise, seed, part, coordinate, answer, " ".join(card.pages))
+            put_typed(connection, now.about.id, text, request.actor.name, request.received_at)
+            if exercise == PAGE and answer:
+                student = scans.papers.papers[answer.partition(" ")[0]].student
+                name_scanned(connection, now.about.id, part, student)
+            about = {
+                "assignment": now.about.id,
+                "exercise": exercise,
+                "part": part if exercise != PAGE else "",
+            }
+            request.note(connection, "scan typed", **about)
 
 
 def _numbers(scans: ClassScans, code: str) -> list[str]:
@@ -153,12 +188,19 @@ def _card_response(
     """Return the requested card, or else the first; if there is none, a message."""
     cards = scans.cards
     index = next((k for k, card in enumerate(cards) if card.id == at), 0)
+    shown = [_scan_card(request, now, scans, card) for card in _beside(cards, index)]
+    with request.site.store.reading() as connection:
+        typed = last_typed(connection, now.about.id, request.actor.name)
     names: dict[str, Any] = {
-        "shown": _scan_card(request, now, scans, cards[index]) if cards else None,
+        "shown": shown[0] if shown else None,
+        "together": shown if len(shown) > 1 and "alone" not in request.query_params else [],
+        "of_question": sum(_question(card) == _question(cards[index]) for card in cards) if cards else 0,
+        "may_undo": len(typed),
         "place": index + 1,
         "count": len(cards),
         "before": cards[index - 1].id if cards else "",
         "after": cards[(index + 1) % len(cards)].id if cards else "",
+        "after_all": cards[(index + len(shown)) % len(cards)].id if cards else "",
         "scans": scans,
         "told": message,
         "place_url": f"/desk/{now.about.id}/scans/queue",
@@ -167,6 +209,18 @@ def _card_response(
     if request.is_fragment:
         return request.render("site/instructor/_scan_card", now=now, **names)
     return class_page_of(request, now, "site/instructor/scan_queue", "scans", **names)
+
+
+def _beside(cards: Sequence[AnswerCard], index: int) -> list[AnswerCard]:
+    """Return a card with those that follow it and are of its question, as many as are confirmed at once."""
+    shown = cards[index : index + 1]
+    if shown and (shown[0].exercise in (NAME, PAGE) or shown[0].what == "drawing"):
+        return [*shown]
+    return [card for card in cards[index:] if _question(card) == _question(shown[0])][:TOGETHER]
+
+
+def _question(card: AnswerCard) -> tuple[str, str]:
+    return card.exercise, card.part
 
 
 def _papers(now: ClassState, scans: ClassScans) -> list[tuple[str, str]]:

@@ -20,8 +20,13 @@
     return true;
   }
 
+  function seen(selector) {
+    return Array.prototype.find.call(document.querySelectorAll(selector), function (one) { return one.offsetParent !== null; });
+  }
+
   document.addEventListener("keydown", function (event) {
     if (event.ctrlKey || event.metaKey || event.altKey) { return; }
+    if (event.key === "Enter" && event.target.matches("[data-cell]")) { event.preventDefault(); event.target.blur(); return; }
     if (event.key === "Escape" && typing(event.target)) { event.target.blur(); return; }
     if (typing(event.target)) { return; }
     var card = document.getElementById("card");
@@ -29,7 +34,13 @@
     var digit = /^(?:Digit|Numpad)([0-9])$/.exec(event.code);
     var key = event.key.toLowerCase();
     var done = true;
-    if (digit) {
+    var cell = digit && document.querySelectorAll("#card [data-cell]")[digit[1] - 1];
+    if (cell && cell.offsetParent !== null) {
+      cell.focus();
+      cell.select();
+    } else if (event.key === "Enter") {
+      done = !event.target.closest("a, button, summary") && Boolean(seen("#card [data-key=enter]")) && press("#card [data-key=enter]");
+    } else if (digit) {
       var points = Number(digit[1]) + (half ? 0.5 : 0);
       arm(false);
       done = press("#card [data-points='" + points + "']");
@@ -47,7 +58,9 @@
     } else if (key === "?") {
       done = press("#card details.keys > summary");
     } else if (/^[arujk]$/.test(key)) {
-      done = press("#card [data-key='" + key + "']");
+      var button = seen("#card [data-key='" + key + "']");
+      done = Boolean(button) && !button.disabled;
+      if (done) { button.click(); }
     } else {
       return;
     }
@@ -57,7 +70,7 @@
   document.addEventListener("htmx:afterSwap", function (event) {
     if (event.detail.target && event.detail.target.id === "card") {
       arm(false);
-      var heading = document.querySelector("#card [data-first], #card h2");
+      var heading = seen("#card [data-first]") || seen("#card h2");
       if (heading) { heading.focus({ preventScroll: true }); }
       if (heading && heading.select) { heading.select(); }
       window.scrollTo(0, Math.min(window.scrollY, document.getElementById("card").offsetTop));
