@@ -37,11 +37,12 @@ class Practising:
         return self.browser.get(self.address).text
 
     def send(self, typed=(), below="", **fields):
-        """A form as a browser sends it; what stands in its hidden fields comes from the page."""
+        """A form as a browser sends it, and the page that it leads to; what stands in its hidden fields comes from the page."""
         versions = unescape(re.search(r'name="versions" value="([^"]*)"', self.page())[1])
         boxes = {BOX + name: text for name, text in dict(typed).items()}
         data = {"_seal": self.seal, "versions": versions, **boxes, **fields}
-        return self.browser.post(self.address + below, data=data)
+        reply = self.browser.post(self.address + below, data=data)
+        return self.browser.get(reply.headers["location"]) if reply.status_code == 303 else reply
 
     def told(self, html, part):
         """What is said of an answer."""

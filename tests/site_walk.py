@@ -312,3 +312,30 @@ __all__ = [
     "filled",
     "fillings",
 ]
+
+
+class Forms(HTMLParser):
+    """The forms of a page that change something, each as a browser without a script sends it by each of its buttons: address and
+    texts."""
+
+    def __init__(self, text):
+        super().__init__()
+        self.sent, self._forms = [], []
+        self.feed(text)
+
+    def handle_starttag(self, tag, attrs):
+        told = dict(attrs)
+        if tag == "form":
+            self._forms.append((told.get("action", ""), told.get("method", "get"), {}))
+        if not self._forms or self._forms[-1][1] != "post":
+            return
+        action, _, texts = self._forms[-1]
+        if tag == "button" and told.get("type", "submit") == "submit":
+            pressed = {told["name"]: told.get("value", "")} if "name" in told else {}
+            self.sent.append((told.get("formaction", action), texts, pressed))
+        elif tag == "input" and "name" in told and told.get("type") not in ("checkbox", "radio", "file"):
+            texts[told["name"]] = told.get("value") or ""
+
+    def handle_endtag(self, tag):
+        if tag == "form":
+            self._forms.pop()

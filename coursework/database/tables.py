@@ -435,7 +435,9 @@ draft = Table(
     METADATA,
     _key(),
     _of("person"),
-    Column("sheet", SafeText, nullable=False),  #: ``practice/EXERCISE/SEED`` or ``assignment/ID``
+    Column(
+        "sheet", SafeText, nullable=False
+    ),  #: ``practice/EXERCISE/SEED``, ``assignment/ID``, ``lessons`` or ``lessons/NAME``
     Column("box", SafeText, nullable=False),  #: a part; of a paper ``EXERCISE/PART``
     Column("text", SafeText, nullable=False),
     Column("version", Integer, nullable=False),  #: counts the changes

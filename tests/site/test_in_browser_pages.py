@@ -3,7 +3,8 @@ its title says, a thumb hits what there is, nothing fails behind it, and it prin
 
 import pytest
 from site_browser import chromium, context_of, cut_in_print, low, serious, served, too_wide, watched
-from site_lived import NO_PAGES, Lived, shown
+from site_lived import NO_PAGES, STUDENT, Lived, shown
+from site_walk import Forms
 from tables import each_row
 
 from coursework.site.application import ROUTES
@@ -11,6 +12,8 @@ from coursework.site.application import ROUTES
 pytestmark = pytest.mark.e2e
 
 REPORT = "/report"  #: a page of its own, to keep; it is printed as a PDF
+WHOLE = {"/lessons/{lesson}": "?whole"}  #: what shows all of a page to a browser without a script
+ENDING = ("/sign-out", "/account", "/account/password")  #: forms after which somebody signs in again
 FAST = ("/practice", "/assignments/{number:int}", "/desk/{assignment:int}", "/desk/{assignment:int}/queue")
 LOOKS = [("fr", "telephone"), ("en", "desk")]  #: the longer words where there is less room
 SCHEMES = [(*LOOKS[0], "light"), (*LOOKS[1], "light"), (*LOOKS[1], "dark")]
@@ -82,3 +85,23 @@ def test_the_pages_that_most_see_are_without_fault(lived, lang, size, scheme):
 @pytest.mark.parametrize(("lang", "size"), LOOKS)
 def test_every_page_is_without_fault(lived, lang, size):
     assert looked_at(lived, lang, size, lambda one: one.path not in FAST) == {}
+
+
+def test_a_page_that_a_student_went_back_to_is_not_sent_again(lived):
+    """Without a script a form leads to a page with an address of its own, whichever button sends it."""
+    site, _, _ = lived
+    tried, wrong = set(), []
+    for page in (one for one in shown(site) if one.name == STUDENT):
+        browser = site.browser(STUDENT)
+        for action, texts, pressed in Forms(browser.get(page.address + WHOLE.get(page.path, "")).text).sent:
+            place = action.partition("#")[0] or page.address
+            if (page.path, place, *pressed) in tried:
+                continue
+            tried.add((page.path, place, *pressed))
+            reply = browser.post(place, data={**texts, **pressed, "_seal": browser.seal})
+            if reply.status_code == 200 and "content-disposition" not in reply.headers:
+                wrong.append((page.address, place, pressed))
+            if place in ENDING:
+                browser = site.browser(STUDENT)
+    assert wrong == []
+    assert len(tried) > 20

@@ -4,6 +4,7 @@ import gzip
 import re
 from functools import cache
 from html import unescape
+from itertools import product
 from threading import Thread
 
 import pytest
@@ -200,7 +201,7 @@ def test_lessons_are_ready_ahead_where_a_worker_marks(class_, monkeypatch, has_w
 
 def blanks(page):
     """The forms of a page's examples: the number, and the names of the boxes."""
-    forms = re.findall(r'<form class="blanks".*?</form>', page, re.DOTALL)
+    forms = re.findall(r'<form class="blanks"[^>]*>.*?</form>', page, re.DOTALL)
     return [
         (re.search(r'name="example" value="(\d+)"', form)[1], re.findall(r'name="(blank-[^"]+)"', form))
         for form in forms
@@ -222,6 +223,7 @@ def test_a_blank_is_marked_as_in_a_notebook(zoe, script):
     reply = zoe.post(f"/lessons/{LESSON}", data=form, headers=headers)
     told = reply.text
     if not script:
+        told = zoe.get(reply.headers["location"].partition("#")[0]).text
         assert f'name="blank-{keys[1]}" value="12"' in told
         told = re.search(rf'id="checked-{number}".*?</div>', told, re.DOTALL)[0]
     notebook = example.check({key: text for key, text in answers.items() if text}).pieces[0]
@@ -246,6 +248,29 @@ def test_all_right_is_said_and_nothing_typed_too(zoe):
     del right[boxes[0]]
     assert "Everything" not in zoe.post(f"/lessons/{LESSON}", data=form | right, headers=script).text
     assert "Write an answer first." in zoe.post(f"/lessons/{LESSON}", data=form, headers=script).text
+    place = zoe.post(f"/lessons/{LESSON}", data=form).headers["location"]
+    assert place.endswith(f"#blanks-{number}")
+    assert "Write an answer first." in zoe.get(place).text
+    assert "Write an answer first." not in zoe.get(f"/lessons/{LESSON}?whole").text
+
+
+def test_an_example_that_was_checked_stands_as_it_was_left_on_every_device(class_):
+    """Of the person alone, in either form of the page, in the language of the reader, as long as the lesson has the example."""
+    number, boxes = blanks(class_.browser(MAX).get(f"/lessons/{LESSON}?whole").text)[0]
+    mine = class_.browser(MAX)
+    mine.post(f"/lessons/{LESSON}", data={"_seal": mine.seal, "example": number, boxes[0]: "12 apples"})
+    for lang, end in product(("en", "fr"), ("", "?whole")):
+        page = class_.browser(MAX, lang).get(f"/lessons/{LESSON}{end}").text
+        form = next(
+            one
+            for one in re.findall(r'<form class="blanks".*?</form>', page, re.DOTALL)
+            if "12 apples" in one
+        )
+        assert "apples" in form.partition('class="told"')[2]
+        assert page.count('value="12 apples"') == 1
+    assert "12 apples" not in class_.browser(ZOE).get(f"/lessons/{LESSON}").text
+    mine.post(f"/lessons/{LESSON}", data={"_seal": mine.seal, "example": number, boxes[0]: ""})
+    assert "data-checked" not in mine.get(f"/lessons/{LESSON}").text
 
 
 @each_row("example", ["0", "1", "-1", "9999", "x", "١", "", "4" * 300])

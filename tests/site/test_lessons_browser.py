@@ -3,6 +3,7 @@
 import pytest
 from site_browser import cut_in_print, low, serious, too_wide, watched
 from site_people import MAX
+from site_server import until
 
 from coursework.site.lessons.lesson_content import lesson_of
 
@@ -112,6 +113,33 @@ def test_a_blank_is_marked_in_its_place(window, desk):
     )
     page.set_viewport_size({"width": 320, "height": 568})
     assert too_wide(page) == 0
+
+
+def test_an_example_that_was_checked_stands_as_it_was_left_without_a_network_too(window, desk):
+    lesson = lesson_of(desk[0].site, LESSON, "en")
+    number = next(k for k, step in enumerate(lesson.steps, 1) if step.blanks)
+    page = window(f"/lessons/{LESSON}#step-{number}")
+    page.evaluate("navigator.serviceWorker.ready.then(() => 0)")
+    page.reload()  # loaded before the worker was there, and with it
+    form = page.locator(f"#step-{number} form.blanks")
+    form.locator("input[type=text]").first.fill("12 apples")
+    form.locator("button").tap()
+    form.locator(".told p").wait_for()
+    told = form.locator(".told").inner_text()
+    kept = "caches.match(location.pathname).then((page) => page && page.text()).then((text) => (text || '').includes('12 apples'))"
+    until(lambda: page.evaluate(kept))
+    for is_offline in (False, True):
+        page.context.set_offline(is_offline)
+        page.reload()
+        page.wait_for_selector(f"#step-{number}.shown form.blanks .told p")
+        assert form.locator(".told").inner_text() == told
+        assert form.locator("input[type=text]").first.input_value() == "12 apples"
+    page.context.set_offline(False)
+    form.locator("input[type=text]").first.fill("12 pears")
+    form.locator("button").tap()
+    page.wait_for_function(
+        "t => document.querySelector(t).innerText.includes('pears')", arg=f"#checked-{number}"
+    )
 
 
 @pytest.mark.parametrize(("size", "script"), [("telephone", False), ("desk", True)])

@@ -19,7 +19,7 @@ from coursework.sheets.book import BlanksPiece
 from coursework.site.frame.budgets import BOXES
 from coursework.site.frame.drafts import LONGEST
 from coursework.site.frame.requests import HTTPException, Request, Route
-from coursework.site.frame.responses import opens_offline
+from coursework.site.frame.responses import opens_offline, redirect
 from coursework.site.lessons.lesson_content import (
     WHOLE,
     example_of,
@@ -28,7 +28,7 @@ from coursework.site.lessons.lesson_content import (
     lesson_lang,
     lesson_of,
 )
-from coursework.site.lessons.places import keep_place, places
+from coursework.site.lessons.places import boxes_of, keep_blanks, keep_place, kept_blanks, places
 from coursework.site.practice.contents import exercise_title, titles
 
 _BOX = "blank-"  #: before the names of the boxes of blanks
@@ -51,25 +51,34 @@ class CheckedBlank(NamedTuple):
     html: Markup
 
 
+class CheckedExample(NamedTuple):
+    """Blanks of an example as they were checked last: the texts by field, and the marks of those that are not blank."""
+
+    texts: Mapping[str, str]
+    marks: tuple[CheckedBlank, ...]
+
+    @property
+    def is_complete(self) -> bool:
+        return len(self.marks) == len(self.texts) and all(one.mark.is_right for one in self.marks)
+
+
 def lesson(request: Request) -> Response:
     """Return the page of a lesson, whose steps are files that browsers keep unless all are asked for; a form checks the blanks of
     one of its examples, or keeps the place of its reader."""
     name = _name(request)
     if request.is_post and "place" in request.form.texts:
         return keep_place(request, name)
-    opened = lesson_of(request.site, name, lesson_lang(request.site, name, request.lang))
-    checked: dict[int, list[CheckedBlank]] = {}
-    is_complete = False
+    lang = lesson_lang(request.site, name, request.lang)
+    opened = lesson_of(request.site, name, lang)
     if request.is_post:
         number, blanks = _example(request, opened)
-        checked[number] = list(_checked(request, blanks))
-        is_complete = len(checked[number]) == len(blanks.questions) and all(
-            one.mark.is_right for one in checked[number]
-        )
+        texts = {key: _typed(request, key) for _, key, _ in blanks.questions}
+        keep_blanks(request, name, blanks, texts)
         if request.is_fragment:
             return request.render(
-                "site/student/_lesson_checked", checked=checked[number], is_complete=is_complete
+                "site/student/_lesson_checked", checked=_checked(request, lang, blanks, texts)
             )
+        return redirect(f"{lesson_address(name)}?{WHOLE}&example={number}#blanks-{number}")
     folder = request.site.course.folder
     order = folder.lessons
     after = order[order.index(name) + 1] if name != order[-1] else ""
@@ -77,22 +86,18 @@ def lesson(request: Request) -> Response:
         "site/student/lesson",
         lesson=opened,
         name=name,
-        lesson_lang=lesson_lang(request.site, name, request.lang),
+        lesson_lang=lang,
         address=lesson_address(name),
-        steps_files=() if request.is_post or WHOLE in request.query_params else _steps_files(request, name),
+        steps_files=() if WHOLE in request.query_params else _steps_files(request, name),
         place=places(request).get(name, ""),
         number=1 + order.index(name),
         chapter=next((c for c in titles(request.site, request.lang) if _has(c, name)), None),
         exercises=_exercises(request, name),
         after=_after(request, after),
         box=_BOX,
-        typed={box: texts[0] for box, texts in request.form.texts.items() if texts},
-        ticked=request.form.texts,
-        checked=checked,
-        checked_example=next(iter(checked), 0),
-        checked_complete=is_complete,
+        checked=_checked_before(request, name, lang, opened),
     )
-    return page if request.is_post else opens_offline(page)
+    return opens_offline(page)
 
 
 def _has(chapter: Any, lesson_name: str) -> bool:
@@ -147,10 +152,7 @@ def _steps_html(request: Request, name: str, lang: str, opened: SteppedLesson, f
         "box": _BOX,
         "first": first,
         "end": end,
-        "typed": {},
-        "ticked": {},
         "checked": {},
-        "checked_example": 0,
         "csrf_token": "",
     }
     return request.site.pages.page("site/student/_lesson_steps", lang, names)
@@ -192,17 +194,39 @@ def _example(request: Request, opened: SteppedLesson) -> tuple[int, BlanksPiece]
     return number, blanks
 
 
-def _checked(request: Request, blanks: BlanksPiece) -> Iterator[CheckedBlank]:
-    name = str(request.path_params["lesson"])
-    example = example_of(request.site, blanks, lesson_lang(request.site, name, request.lang))
-    texts: Mapping[str, str] = {
-        key: ", ".join(request.form.texts.get(f"{_BOX}{key}", ()))[:LONGEST] for _, key, _ in blanks.questions
-    }
-    marks = example.marks({key: text for key, text in texts.items() if not is_blank(text)})
-    for place, key, _ in blanks.questions:
-        if key in marks:
-            html = markdown.html_inline(marks[key].sentence, example.lang)
-            yield CheckedBlank(place, marks[key], Markup(html))
+def _typed(request: Request, key: str) -> str:
+    return ", ".join(request.form.texts.get(f"{_BOX}{key}", ()))[:LONGEST]
+
+
+def _checked(request: Request, lang: str, blanks: BlanksPiece, texts: Mapping[str, str]) -> CheckedExample:
+    """Return the marks of texts in the blanks of an example, from a cache."""
+
+    def marked() -> Iterator[CheckedBlank]:
+        example = example_of(request.site, blanks, lang)
+        marks = example.marks({key: text for key, text in texts.items() if not is_blank(text)})
+        for place, key, _ in blanks.questions:
+            if key in marks:
+                yield CheckedBlank(place, marks[key], Markup(markdown.html_inline(marks[key].sentence, lang)))
+
+    key = "blanks", lang, blanks.exercise, blanks.seed, blanks.level, blanks.parts, tuple(texts.items())
+    marks = request.site.cache.get(key, lambda: tuple(marked()))
+    return CheckedExample({_BOX + name: text for name, text in texts.items()}, marks)
+
+
+def _checked_before(
+    request: Request, name: str, lang: str, opened: SteppedLesson
+) -> dict[int, CheckedExample]:
+    """Return the examples of a lesson that the person checked before, by the number of their step, and the one that a form led
+    from, even if nothing is in its blanks."""
+    found, asked = {}, request.query_params.get("example", "")
+    kept = kept_blanks(request, name)
+    for number, step in enumerate(opened.steps, 1):
+        if step.blanks and (
+            str(number) == asked or any(kept.get(box) for box in boxes_of(step.blanks).values())
+        ):
+            texts = {key: kept.get(box, "") for key, box in boxes_of(step.blanks).items()}
+            found[number] = _checked(request, lang, step.blanks, texts)
+    return found
 
 
 # ------------------------------------------------------------------- drawings

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from datetime import datetime
 from functools import partial
 from typing import Any, NamedTuple
+from urllib.parse import urlencode
 
 from starlette.responses import HTMLResponse, Response
 
@@ -71,7 +72,10 @@ def sheet(request: Request) -> Response:
     if request.is_post:
         return _form_response(request, work)
     _warm(request, work)
-    return opens_offline(_page(request, work, work.attempt.marked(), work.box_contents()))
+    query = request.query_params  # what a form asked for: the page that it leads to can be gone back to
+    hinted = _seen_hints(work, query["hint"]) if "hint" in query else {}
+    came = (work.part(query["check"]).id,) if "check" in query else ()
+    return opens_offline(_page(request, work, work.attempt.marked(), work.box_contents(), hinted, came=came))
 
 
 class BegunVariant(NamedTuple):
@@ -142,8 +146,15 @@ def _form_response(request: Request, work: Worksheet) -> Response:
         return _gone(request, work, target)
     if request.is_fragment:
         return _pieces(request, work, checked, parts, hinted)
-    names = {"others": {BOX_PREFIX + n: box for n, box in work.others.items()}, "came": parts}
-    return _page(request, work, checked, work.typed, hinted, **names)
+    if work.others:  # what was typed is stored nowhere
+        names = {"others": {BOX_PREFIX + n: box for n, box in work.others.items()}, "came": parts}
+        return _page(request, work, checked, work.typed, hinted, **names)
+    shown = {
+        "check": request.form.text("check"),
+        "hint": request.form.text("hint") or request.form.text("reveal"),
+    }
+    query = urlencode({name: text for name, text in shown.items() if text})
+    return redirect(f"{work.address}?{query}" if query else work.address)
 
 
 def _acted(
@@ -177,13 +188,17 @@ def _checked(request: Request, work: Worksheet) -> tuple[CheckedAnswers, tuple[s
 
 
 def _hinted(request: Request, work: Worksheet) -> dict[str, tuple[QuestionHints, ...]]:
-    """Return the hints of a question, and below them those of the requested step towards it."""
+    """Record the hint or the solution that a form requests; return what is then shown."""
     action = "hint" if "hint" in request.form.texts else "reveal"
     under, _, name = request.form.text(action).partition(" ")
-    work.part(under)
-    name = name or under
-    new = work.hint(name) if action == "hint" else work.reveal(name)
-    return {under: (new,) if name == under else (work.hinted(under), new)}
+    (work.hint if action == "hint" else work.reveal)(name or work.part(under).id)
+    return _seen_hints(work, request.form.text(action))
+
+
+def _seen_hints(work: Worksheet, text: str) -> dict[str, tuple[QuestionHints, ...]]:
+    """Return the seen hints of a question, and below them those of the step towards it that the text of a button names."""
+    under, _, name = text.partition(" ")
+    return {work.part(under).id: tuple(map(work.hinted, dict.fromkeys((under, name or under))))}
 
 
 def _page(

@@ -272,8 +272,8 @@ class Worksheet:
             line = readings[0]
         return Markup(markdown.html_inline(line, self.variant.lang))
 
-    def hinted(self, name: str, most: int | None = None) -> QuestionHints:
-        """Return the first hints for a question or for a step towards it, by default those that were seen.
+    def hinted(self, name: str) -> QuestionHints:
+        """Return the hints for a question, or for a step towards it, that were seen.
 
         Raises
         ------
@@ -284,7 +284,7 @@ class Worksheet:
             quantity = hints.quantity_of(self.variant, name)
         except CourseworkError:
             raise HTTPException("bad_request", 400) from None
-        seen = self.attempt.hints_seen(name) if most is None else most
+        seen = self.attempt.hints_seen(name)
         texts = self.attempt.hints(name, lambda other: self._asks("hint", other))
         lang, solution = self.variant.lang, ""
         if self._is_revealed(name):
@@ -299,19 +299,15 @@ class Worksheet:
             Markup(markdown.to_html(solution, lang)) if solution else Markup(""),
         )
 
-    def hint(self, name: str) -> QuestionHints:
-        """Return the hints with one more, and record it."""
-        before = self.hinted(name, 0)
-        step = min(self.attempt.hints_seen(name) + 1, before.of)
-        if step:
+    def hint(self, name: str) -> None:
+        """Record one hint more as seen."""
+        if step := min(self.attempt.hints_seen(name) + 1, self.hinted(name).of):
             self.attempt.note(HINT, name, step=step)
-        return self.hinted(name, step)
 
-    def reveal(self, name: str) -> QuestionHints:
-        """Return the hints with the solution of the step, and record it."""
-        self.hinted(name, 0)
+    def reveal(self, name: str) -> None:
+        """Record the solution of a step as seen."""
+        self.hinted(name)
         self.attempt.note(REVEAL, name)
-        return self.hinted(name)
 
     def _is_revealed(self, name: str) -> bool:
         return any(e["what"] == REVEAL and e["part"] == name for e in self.store.happened(self.variant.seed))

@@ -90,6 +90,8 @@
       if (k >= 0) show(k, false);
     });
     if (matchMedia("(min-width: 76rem)").matches) lesson.querySelector(".lesson-contents").open = true;
+    // The page that opens without a network holds what is checked from now on.
+    lesson.addEventListener("htmx:afterSwap", () => navigator.serviceWorker && navigator.serviceWorker.ready.then((one) => one.active.postMessage({ seen: location.href })));
     for (const failure of ["htmx:sendError", "htmx:responseError"]) {
       lesson.addEventListener(failure, (event) => { event.detail.target.textContent = lesson.dataset.notChecked; });
     }
@@ -137,6 +139,14 @@
       place.replaceChildren(...step.childNodes);
       htmx.process(place);
       equip(place);
+    }
+    // An example that was checked before stands as it was left.
+    for (const before of lesson.querySelectorAll("template[data-checked]")) {
+      const form = before.content.firstElementChild, place = document.getElementById(form.id);
+      if (!place) continue;
+      place.replaceWith(form);
+      before.remove();
+      htmx.process(form);
     }
   }
   async function open() {
