@@ -95,12 +95,12 @@ def _restored(template: str, values: dict[str, Any]) -> Message:
     return Message(template, **values)
 
 
-def joined_notes(notes: Iterable[str]) -> str:
-    """Return notes as one message with semicolons between them, each of which is still translated; "" without notes."""
+def joined_notes(notes: Iterable[str], separator: str = "; ") -> str:
+    """Return notes as one message with a separator between them, each of which is still translated; "" without notes."""
     several = dict(zip(_PLACES, filter(None, notes), strict=False))
     if len(several) < 2:
         return next(iter(several.values()), "")
-    return Message("; ".join(f"{{{place}}}" for place in several), **several)
+    return Message(separator.join(f"{{{place}}}" for place in several), **several)
 
 
 def separate_notes(note: str) -> tuple[str, ...]:

@@ -10,7 +10,7 @@ import os
 import re
 import sys
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from functools import cache, reduce
+from functools import cache
 from itertools import islice
 from operator import itemgetter
 from pathlib import Path
@@ -37,7 +37,7 @@ from coursework.gradebook.submission_folders import SIDE_FILES, SubmittedFile, l
 from coursework.issuing.identity import plain
 from coursework.issuing.issued import COLUMNS
 from coursework.language.words import languages
-from coursework.messages import Message, localised
+from coursework.messages import Message, joined_notes, localised
 from coursework.system.extras import NotAtHand, library
 from coursework.system.limits import MOST_BYTES as MAX_BYTES
 from coursework.system.limits import (
@@ -230,8 +230,8 @@ def _read_csv(data: bytes, source: str) -> Iterator[AnswerRow | Rejected | Platf
             titles = ", ".join(c for c in header if c) or "nothing"
             wanted = Message(
                 "the header must name {columns}; {missing} missing, found {found}",
-                columns=_listed(TITLES.values()),
-                missing=_listed(TITLES[c] for c in missing),
+                columns=joined_notes(TITLES.values(), ", "),
+                missing=joined_notes((TITLES[c] for c in missing), ", "),
                 found=titles,
             )
             yield Rejected(location, fault_of(cells) or wanted)
@@ -242,10 +242,6 @@ def _read_csv(data: bytes, source: str) -> Iterator[AnswerRow | Rejected | Platf
         named = itemgetter(*(header.index(c) for c in COLUMNS))
     if not has_rows:
         yield Rejected(source, NO_ANSWERS)
-
-
-def _listed(titles: Iterable[Message]) -> Message:
-    return reduce(lambda first, second: Message("{first}, {second}", first=first, second=second), titles)
 
 
 @cache

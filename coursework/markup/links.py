@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 _LINK = re.compile(
     r"\[(?P<said>[^\[\]]+)\]\("
-    r"(?:(?P<kind>exercise|lesson|figure(?=:\w+#)):(?P<name>\w+)(?:#(?P<section>\d+(?:\.\d+)?))?|#(?P<mark>index|word|machine)(?:\s+\"(?P<entry>[^\"]*)\")?)\)"
+    r"(?:(?P<kind>exercise|lesson|figure(?=:\w+#)):(?P<name>\w+)(?:#(?P<number>\d+(?:\.\d+)?))?|#(?P<mark>index|word|machine)(?:\s+\"(?P<entry>[^\"]*)\")?)\)"
 )
 _VERBATIM = re.compile(r"(```.*?```|`[^`\n]*`)", re.DOTALL)
 
@@ -26,8 +26,19 @@ class TextLink:
     said: str
     kind: str  #: exercise, lesson, figure, term, or of what an index has found: word or machine
     name: str  #: of the exercise or lesson, or the entry
-    section: int = 0
-    number: str = ""  #: of a figure
+    number: str = ""  #: of a section or of a figure
+
+    @property
+    def section(self) -> int:
+        """Number of the section of a lesson; 0 without one."""
+        return 0 if self.kind == "figure" else int(self.number or 0)
+
+    @property
+    def anchor(self) -> str:
+        """Identifier of the section or figure in its lesson, such as ``section-3``; "" for the lesson itself."""
+        if not self.number:
+            return ""
+        return f"{'figure' if self.kind == 'figure' else 'section'}-{self.number}"
 
 
 def relinked(text: str, write: Callable[[TextLink], str]) -> str:
@@ -47,6 +58,4 @@ def _link(match: re.Match[str]) -> TextLink:
     if match["kind"] is None:
         kind = TERM if match["mark"] == "index" else match["mark"]
         return TextLink(text, kind, " ".join((match["entry"] or text).split()))
-    if match["kind"] == "figure":
-        return TextLink(text, "figure", match["name"], number=match["section"])
-    return TextLink(text, match["kind"], match["name"], int(match["section"] or 0))
+    return TextLink(text, match["kind"], match["name"], match["number"] or "")

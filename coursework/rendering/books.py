@@ -345,10 +345,7 @@ def _own_exercises(book: Book, lesson: LessonText) -> tuple[BookExercise, ...]:
 def _html_pieces(env: Environment, book: Book, lesson: LessonText, names: Mapping[str, Any]) -> Markup:
     def address(link: TextLink) -> str:
         file = f"{link.name}.html"
-        section = (
-            f"#section-{link.section}" if link.section else f"#figure-{link.number}" if link.number else ""
-        )
-        return f"{file}{section}" if file in names["files"] else ""
+        return f"{file}{link.anchor and '#'}{link.anchor}" if file in names["files"] else ""
 
     return LessonPages(env, lesson, address).html(lesson.pieces)
 

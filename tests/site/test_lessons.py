@@ -46,12 +46,12 @@ def zoe(class_):
 
 
 @cache
-def ids_of(name, lang):
-    """The identifiers of sections and figures in a lesson of the site."""
-    text = lesson_text(COURSE, name, lang)
+def in_steps(name, lang):
+    """A lesson of the site, the text of its steps, and the identifiers of their sections and figures."""
     env = environment_of(COURSE.folder.template_folders, lang)
-    lesson = stepped(env, text, lesson_content._address, "/figures")
-    return {found for step in lesson.steps for found in re.findall(r' id="([^"]+)"', step.html + step.below)}
+    lesson = stepped(env, lesson_text(COURSE, name, lang), lesson_content._address, "/figures")
+    html = "".join(step.html + step.below for step in lesson.steps)
+    return lesson, html, re.findall(r' id="([^"]+)"', html)
 
 
 @every_lesson
@@ -60,14 +60,12 @@ def test_a_lesson_in_steps_says_all_that_its_book_page_says_and_leads_somewhere(
     """Rendered here rather than by the site, which adds nothing but the frame: the next test."""
     text = lesson_text(COURSE, name, lang)
     env = environment_of(COURSE.folder.template_folders, lang)
-    lesson = stepped(env, text, lesson_content._address, "/figures")
-    html = "".join(step.html + step.below for step in lesson.steps)
+    lesson, html, ids = in_steps(name, lang)
     book = LessonPages(env, text, lesson_content._address).html(
         [piece for piece in text.pieces if not isinstance(piece, BlanksPiece)]
     )
     assert words_of(html).split() == words_of(book).split()
     assert len(re.findall("<img", html)) == len(re.findall("<img", book))
-    ids = re.findall(r' id="([^"]+)"', html)
     assert len(ids) == len(set(ids))
     for address in re.findall(r'href="([^"]+)"', html):
         path, _, anchor = address.partition("#")
@@ -75,7 +73,7 @@ def test_a_lesson_in_steps_says_all_that_its_book_page_says_and_leads_somewhere(
         if path.startswith("http"):
             continue
         assert target in {"practice": COURSE.names, "lessons": COURSE.folder.lessons}[kind], address
-        assert not anchor or anchor in (ids if target == name else ids_of(target, lang)), address
+        assert not anchor or anchor in in_steps(target, lang)[2], address
     for number in lesson_sections(COURSE.folder, name, lang):
         assert f"section-{number}" in ids
     for file in re.findall(r'src="/figures/([^"]+)"', html):

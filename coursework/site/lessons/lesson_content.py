@@ -79,14 +79,12 @@ def render_lesson(course: Course[Any], name: str, lang: str) -> SteppedLesson:
 def _address(link: TextLink) -> str:
     if link.kind == "exercise":
         return f"/practice/{link.name}"
-    if link.number:
-        return f"/lessons/{link.name}?{WHOLE}#figure-{link.number}"
-    return lesson_address(link.name, link.section)
+    return lesson_address(link.name, link.anchor)
 
 
-def lesson_address(name: str, section: int | str = 0) -> str:
-    """Return the address of a lesson, or of a section by its number, which without a script only the whole lesson has."""
-    return f"/lessons/{name}?{WHOLE}#section-{section}" if section else f"/lessons/{name}"
+def lesson_address(name: str, anchor: str = "") -> str:
+    """Return the address of a lesson, or of a section or figure in it, which without a script only the whole lesson has."""
+    return f"/lessons/{name}?{WHOLE}#{anchor}" if anchor else f"/lessons/{name}"
 
 
 def example_of(site: Site, blanks: BlanksPiece, lang: str) -> WorkedExample:
@@ -108,7 +106,8 @@ def lessons_for(site: Site, exercise: str, lang: str) -> tuple[Lesson, ...]:
 def section_links(lesson: Lesson) -> tuple[LessonLink, ...]:
     """Return the links to the sections of a lesson that teach an exercise; to the lesson where the whole of it does."""
     sections = tuple(
-        LessonLink(lesson_address(lesson.name, number), title, number) for number, title in lesson.places
+        LessonLink(lesson_address(lesson.name, f"section-{number}"), title, number)
+        for number, title in lesson.places
     )
     return sections or (LessonLink(lesson_address(lesson.name), lesson.title),)
 
@@ -129,7 +128,9 @@ def help_with_mistake(site: Site, exercise: str, mistake: str, lang: str) -> Les
     folder = site.course.folder
     heading = lesson_sections(folder, name, lang).get(number, "").partition(". ")[2]
     title = heading or lesson_title(folder, name, lang)
-    return LessonLink(lesson_address(name, number), title, str(number) if heading else "")
+    return LessonLink(
+        lesson_address(name, f"section-{number}" if number else ""), title, str(number) if heading else ""
+    )
 
 
 def exercises_of(site: Site, name: str, lang: str) -> tuple[str, ...]:

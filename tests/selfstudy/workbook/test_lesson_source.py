@@ -85,7 +85,7 @@ def test_links_are_found_and_written_anew_outside_code():
         TextLink("two rods", "term", "rod, two"),
         TextLink("the exercise", "exercise", "crank_pin"),
     )
-    assert links("[a\nb](lesson:rods#3)") == (TextLink("a b", "lesson", "rods", 3),)
+    assert links("[a\nb](lesson:rods#3)") == (TextLink("a b", "lesson", "rods", "3"),)
     written = relinked(TEXT, lambda link: link.said.upper())
     assert "A ROD and TWO RODS." in written
     assert "`[code](exercise:none)`" in written
