@@ -13,6 +13,8 @@ from coursework.database.areas import put_areas
 from coursework.database.people import put_account, put_person
 from coursework.database.permissions import Area
 from coursework.database.tables import person
+from coursework.site.desk.class_cache import class_now
+from coursework.site.desk.question_page import statistics_of
 
 CARA = "Cara"
 
@@ -104,4 +106,6 @@ def test_presence_on_the_roster_is_known_to_class_evening_and_semester(site):
         assert lines(site, **{f"weight.{site.of_max}": "1"})[MAX]["of Max"] == cell
         row = re.search(rf"<tr id=.*?{MAX}.*?</tr>", page.get(at).text, re.DOTALL)[0]
         assert told in row
+        counted = statistics_of(class_now(site.site, site.of_max)).students
+        assert counted == (cell != "excused"), "who is excused is not at zero in the statistics"
     assert "presence" in page.get(f"{at}/files/summary.csv").text.splitlines()[0]

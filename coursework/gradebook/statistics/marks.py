@@ -13,7 +13,8 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from coursework.errors import BadInput, counted
-from coursework.gradebook.columns import SITTING, VERDICTS
+from coursework.gradebook.columns import PRESENCE, SITTING, VERDICTS
+from coursework.gradebook.presence import ABSENT, EXCUSED
 from coursework.messages import Message
 from coursework.system.links import check_inside
 from coursework.system.tables import as_written, delimiter_of, duplicate_column, open_csv
@@ -110,6 +111,7 @@ class StudentSummary(NamedTuple):
     out_of: float
     missing: int  #: answers
     unreadable: bool  #: something of theirs could not be read
+    is_away: bool = False  #: absent or excused, where somebody stated it
 
 
 def marks_of(lines: Iterable[Line], entries: Mapping[str, StudentSummary], rejected: int = 0) -> Marks:
@@ -134,6 +136,7 @@ class _Columns:
     def marks(self, entries: Mapping[str, StudentSummary], rejected: int) -> Marks:
         """Return the marks, with the summaries."""
         students, marked = self.students, len(self.students)
+        entries = {name: entry for name, entry in entries.items() if not entry.is_away or name in students}
         unread = [name for name, entry in entries.items() if entry.unreadable]
         for name in entries:
             students[name]
@@ -209,8 +212,11 @@ def _summary(path: Path, decimals: _Decimals) -> dict[str, StudentSummary]:
     """Return the summary of each student."""
     if not path.is_file():
         return {}
+    away = dict(_lines(path, ("student", PRESENCE))) if PRESENCE in _header(path) else {}
     return {
-        name: StudentSummary(out_of, round(missing), unreadable.strip() not in ("", "0"))
+        name: StudentSummary(
+            out_of, round(missing), unreadable.strip() not in ("", "0"), away.get(name) in (ABSENT, EXCUSED)
+        )
         for name, unreadable, out_of, missing in _lines(path, _SUMMARY, decimals)
     }
 

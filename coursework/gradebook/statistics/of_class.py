@@ -6,17 +6,21 @@ from collections.abc import Iterable, Iterator, Mapping
 
 from coursework.gradebook.book import Result
 from coursework.gradebook.graded_sheet import Graded
+from coursework.gradebook.presence import ABSENT, EXCUSED
 from coursework.gradebook.statistics.marks import Line, Marks, StudentSummary, marks_of
 
 
-def marks_of_class(graded: Iterable[Graded], results: Mapping[str, Result], rejected: int = 0) -> Marks:
+def marks_of_class(
+    graded: Iterable[Graded], results: Mapping[str, Result], rejected: int, presence: Mapping[str, str]
+) -> Marks:
     """Return the columns of a class; for a student with several sittings only those of the one that counts."""
-    text = {student: _summary_of(result) for student, result in results.items()}
+    text = {s: _summary_of(result, presence.get(s) in (ABSENT, EXCUSED)) for s, result in results.items()}
     return marks_of(_lines(graded, results), text, rejected)
 
 
-def _summary_of(result: Result) -> StudentSummary:
-    return StudentSummary(result.out_of, result.verdicts["missing"], bool(result.verdicts["unreadable"]))
+def _summary_of(result: Result, is_away: bool) -> StudentSummary:
+    is_unread = bool(result.verdicts["unreadable"])
+    return StudentSummary(result.out_of, result.verdicts["missing"], is_unread, is_away)
 
 
 def _lines(graded: Iterable[Graded], results: Mapping[str, Result]) -> Iterator[Line]:

@@ -30,7 +30,7 @@ _ANSWERS = 60  #: answers listed
 
 def statistics_of(now: ClassState) -> Statistics:
     """Return the current statistics of the class."""
-    marks = marks_of_class(now.graded.values(), now.results, len(now.book.rejected))
+    marks = marks_of_class(now.graded.values(), now.results, len(now.book.rejected), now.presence)
     return measure(marks, sheet_order(now.course, now.issued.exercises))
 
 
