@@ -18,7 +18,7 @@ from coursework.gradebook.decisions import Decisions
 from coursework.gradebook.graded_sheet import Graded
 from coursework.gradebook.placing import SheetKey, Sheets
 from coursework.gradebook.presence import presence_on_roster
-from coursework.gradebook.questions import drawn_questions, number_of, questions_of
+from coursework.gradebook.questions import drawn_questions, numbers_on_papers, questions_of
 from coursework.gradebook.rows import TITLES, Rejected
 from coursework.gradebook.waiting import (
     SHOWN_ON_REQUEST,
@@ -252,9 +252,13 @@ class ClassState:
         """Questions that are answered by a drawing."""
         return drawn_questions(self.course, self.issued)
 
+    @cached_property
+    def _numbers_on_papers(self) -> dict[tuple[str, str], str]:
+        return numbers_on_papers(self.questions, self.issued)
+
     def number(self, exercise: str, part: str) -> str:
         """Return the number of a question on the papers, such as ``2.3``."""
-        return number_of(self.questions, exercise, part)
+        return self._numbers_on_papers[exercise, part]
 
     # ------------------------------------------------------------------- waiting
 

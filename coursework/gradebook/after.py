@@ -33,7 +33,7 @@ from coursework.gradebook.decision import new_id
 from coursework.gradebook.decisions import ACCEPTED, GIVEN, WITHDRAWN, Decision, Decisions, check_steps
 from coursework.gradebook.graded_sheet import Graded
 from coursework.gradebook.presence import ABSENT, EXCUSED, PRESENT
-from coursework.gradebook.questions import drawn_questions, number_of, questions_of
+from coursework.gradebook.questions import drawn_questions, numbers_on_papers, questions_of
 from coursework.gradebook.rows import Rejected
 from coursework.gradebook.scale import USUAL_SCALE, mark_on
 from coursework.gradebook.statistics.alike import alike_lines
@@ -263,7 +263,11 @@ class Exam:
 
     def number(self, exercise: str, part: str) -> str:
         """Return the number of a question on the papers, such as ``2.3``."""
-        return number_of(self.questions, exercise, part)
+        return self._numbers_on_papers[exercise, part]
+
+    @cached_property
+    def _numbers_on_papers(self) -> dict[Question, str]:
+        return numbers_on_papers(self.questions, self.issued)
 
     def exercise_number(self, exercise: str) -> str:
         """Return the number of an exercise on the papers; empty for one that they do not have."""
@@ -279,8 +283,8 @@ class Exam:
         return kinds
 
     def called(self, name: str, lang: str = "en") -> list[Question]:
-        """Return the questions of a name: a number on the papers, such as ``2.3``, or ``exercise/part``; an exercise, by its
-        number or its name; or a kind of part, such as ``angle``, as itself or in words.
+        """Return the questions of a name: a number on the papers, such as ``2.3``, which may be that of different questions, or
+        ``exercise/part``; an exercise, by its number or its name; or a kind of part, such as ``angle``, as itself or in words.
 
         Raises
         ------
@@ -288,9 +292,10 @@ class Exam:
             There are none.
         """
         asked, kind_names = name.strip(), words(lang)["after"]["sorts"]
-        for question in self.questions:
-            if asked in ("/".join(question), self.number(*question)):
-                return [question]
+        found = [one for one in self.questions if asked in ("/".join(one), self.number(*one))]
+        found = found or [one for one in self.questions if asked in self.number(*one).split("/")]
+        if found:
+            return found
         found = [one for one in self.questions if asked in (one[0], self.exercise_number(one[0]))]
         for kind, questions in self.kinds.items():
             if folded(asked) in (folded(kind), folded(kind_names.get(kind, kind))):
@@ -413,7 +418,7 @@ class Exam:
         """Questions in the order of the sheets, as the class answered them without adjustments."""
         adjustments = self.decisions.adjustments
         plain = self._results(self.decided, Adjustments())
-        marks = marks_of_class(self.decided, plain, len(self.rejected))
+        marks = marks_of_class(self.decided, plain, len(self.rejected), self.presence)
         by_question = {(p.exercise, p.part): p for p in measure(marks).parts}
         worth = {
             (name, str(part["id"])): part

@@ -27,11 +27,17 @@ def _in_order(course: Course, name: str, parts: Mapping[str, None]) -> list[str]
     return sorted(parts, key=lambda part: order.index(part) if part in order else len(order))
 
 
-def number_of(questions: Sequence[Question], exercise: str, part: str) -> str:
-    """Return the number of a question on the papers, such as ``2.3``."""
+def numbers_on_papers(questions: Sequence[Question], issued: Issued) -> dict[Question, str]:
+    """Return the numbers of questions on the papers that ask them, such as ``2.3``; ``2.3/2.4`` where they differ."""
+    positions: dict[Question, set[int]] = {question: set() for question in questions}
+    for (name, _), record in issued.records.items():
+        for position, part in enumerate(record["parts"], start=1):
+            positions[name, str(part["id"])].add(position)
     names = list(dict.fromkeys(name for name, _ in questions))
-    exercise_parts = [p for name, p in questions if name == exercise]
-    return f"{names.index(exercise) + 1}.{exercise_parts.index(part) + 1}"
+    return {
+        question: "/".join(f"{names.index(question[0]) + 1}.{position}" for position in sorted(own))
+        for question, own in positions.items()
+    }
 
 
 def drawn_questions(course: Course, issued: Issued) -> frozenset[Question]:

@@ -26,6 +26,7 @@ from markupsafe import Markup
 
 from coursework.errors import BadCourse, BadStatement
 from coursework.language.words import words
+from coursework.marking.feedback import localised
 from coursework.markup.formulas import after_number
 from coursework.rendering import feedback, views
 
@@ -101,6 +102,7 @@ def environment(
         called=feedback.question_heading,
         right=feedback.right_answer,
         read_otherwise=feedback.read_otherwise,
+        reading=lambda read_as: localised(read_as, lang),
         is_brief=lambda line, prefix="": feedback.is_brief(line, lang, prefix),
         is_long=feedback.is_long,
         note=lambda line, prefix="": feedback.note(line, lang, prefix),

@@ -1,8 +1,10 @@
 """Groups of a class: pages, statistics and exports of one group, and what an assistant of a group sees and does."""
 
 import csv
+import html
 import io
 import re
+from urllib.parse import urljoin
 
 import pytest
 from site_people import MAX, TEACHER, ZOE, Class
@@ -55,6 +57,33 @@ def test_class_questions_and_files_are_of_the_group_that_is_chosen(site):
             if reply.status_code != 200 or (found != shown and (end != "/question" or not found <= shown)):
                 wrong.append((name, group, end, reply.status_code, found))
     assert not wrong
+
+
+@pytest.mark.parametrize("name", [CARA, "Ivy"])
+def test_no_link_of_the_desk_leads_where_its_reader_may_not_go(site, name):
+    """To an assistant of a group, and to one of the whole assignment."""
+    if name not in site.ids:
+        with site.site.store.begin() as connection:
+            site.ids[name] = put_person(connection, identifier=name, name=name, lang="", columns={})
+            put_account(connection, site.ids[name], login=f"{name}@example.org", role="assistant")
+            put_areas(connection, site.ids[name], [Area(site.number, None)])
+    browser, seen, waiting, refused = site.browser(name), set(), ["/desk"], []
+    while waiting:
+        address = html.unescape(waiting.pop())
+        page = re.sub(r"(?<=[?&])(?:sort|at|why|verdict)=[^&#]*&?", "", address.partition("#")[0]).rstrip(
+            "?&"
+        )
+        if page in seen or not page.startswith("/desk"):
+            continue
+        seen.add(page)
+        reply = browser.get(page)
+        if reply.status_code in (403, 404):
+            refused.append(page)
+        elif "text/html" in reply.headers.get("content-type", ""):
+            waiting += [urljoin(page, link) for link in re.findall(r'href="([^"]+)"', reply.text)]
+    assert len(seen) > 8
+    assert not refused
+    assert (f"/desk/{site.number}/scans" in seen) == (name == "Ivy")
 
 
 def test_statistics_of_a_group_count_its_students_alone(site):

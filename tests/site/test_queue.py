@@ -3,15 +3,17 @@
 import re
 
 import pytest
-from desk_class import EXERCISE, OTHER, SEED, DeskClass, Rejected, field, told
+from desk_class import EXERCISE, OTHER, SEED, STUDENTS, DeskClass, Rejected, field, told
 from site_people import TEACHER, ZOE
 from tables import each_row
 
+from coursework.database.assignments import issued_content, put_issued
 from coursework.database.current_marks import adjusted_sheets
 from coursework.database.decisions import read_decisions
 from coursework.database.instructor_queries import people_of
 from coursework.database.submissions import insert_submission
 from coursework.gradebook.rows import AnswerRow, RowOrigin
+from coursework.site.desk import after_exam
 from coursework.site.desk.class_cache import class_now
 
 WRITTEN = {
@@ -67,6 +69,36 @@ def test_a_wrong_answer_that_three_wrote_waits_and_one_that_two_wrote_does_not(t
     assert not waiting(desk)
     desk.hand_in({"Cy": {"rA": "777.0"}, "Di": {"rA": "777"}})
     assert [one[0] for one in waiting(desk)] == ["often"]
+
+
+def test_a_question_has_its_number_on_the_papers_everywhere(tmp_path):
+    """A choice or an angle is asked third, and the questions after it are fourth, fifth and so on for all."""
+    desk = DeskClass(f"sqlite:///{tmp_path}/desk.db", {})
+    exercise = desk.site.course[EXERCISE]
+    variants = [exercise.variant(seed, "fr") for seed in range(12)]
+    first, other = variants[0], next(v for v in variants if v.part_ids != variants[0].part_ids)
+    both = dict(zip(STUDENTS, (first, other), strict=False))
+    with desk.site.store.begin() as connection:
+        content = issued_content(connection, desk.number)
+        issued = [{"student": name, "record": variant.record} for name, variant in both.items()]
+        number = put_issued(
+            connection,
+            {**content, "assignment": {**content["assignment"], "name": "other"}, "issued": issued},
+        )
+    now = class_now(desk.site, number)
+    for variant in both.values():
+        numbers = [now.number(EXERCISE, part) for part in variant.part_ids]
+        assert numbers == [f"1.{k}" for k in range(1, len(numbers) + 1)]
+    third = {variant.part_ids[2] for variant in both.values()}
+    assert {part for _, part in after_exam.exam_of(now).called("1.3")} == third
+    page = desk.browser(TEACHER, "fr").get(f"/desk/{number}").text
+    assert (page.count(">1.3<"), ">1.10<" in page) == (2, False)
+
+
+def test_what_was_read_has_the_numbers_of_the_readers_language(desk):
+    desk.hand_in({"Di": {"rA": desk.at_margin("rA", 1.5) + " mm"}})
+    page = desk.browser(TEACHER, "fr").get(f"/desk/{desk.number}/student", params={"name": "Di"})
+    assert re.search(r"Lu\s*:\s*\d+,\d+", page.text)
 
 
 def test_the_card_shows_what_a_person_needs(desk):

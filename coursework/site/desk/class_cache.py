@@ -230,5 +230,5 @@ def class_page_of(request: Request, now: Any, template: str, tab: str, **names: 
     group = group_key(request.query_params.get(CLASS_GROUP, ""))
     return request.render(
         template, now=now, tab=tab, heading=now.about.title(request.lang), class_group=group,
-        class_groups=cache(partial(_groups_here, request, now.about.id)), group_query=urlencode({CLASS_GROUP: group}) if group else "", **names,
+        sees_all=groups_within(request.user, now.about.id) is None, class_groups=cache(partial(_groups_here, request, now.about.id)), group_query=urlencode({CLASS_GROUP: group}) if group else "", **names,
     )  # fmt: skip

@@ -55,7 +55,6 @@ class AnswerLine:
 
     question_card: QuestionCard
     number: str  #: on the student's paper
-    in_class: str  #: number of the question in the class, if different
     machine: Mark
     mark: Mark
     sign: str
@@ -162,10 +161,10 @@ def _line(
     events = [event for event in happened if event.seed in ("", str(machine.seed))]
     events = [event for event in events if event.sitting in (0, machine.sitting)]
     lines = tuple(_history_line(request, event) for event in events)
-    mark, in_class = graded.lines[part], now.number(machine.exercise, part)
-    number = f"{in_class.partition('.')[0]}.{list(machine.lines).index(part) + 1}"
+    mark, place = graded.lines[part], now.number(machine.exercise, part).partition(".")[0]
+    number = f"{place}.{list(machine.lines).index(part) + 1}"
     return AnswerLine(
-        question_card(now.course, now.issued, machine, part, request.lang), number, in_class if in_class != number else "",
+        question_card(now.course, now.issued, machine, part, request.lang), number,
         machine.lines[part], mark, sign_of(mark), lines,
         now.decisions.standing(machine, machine.lines[part]) is not None, steps(machine.lines[part].out_of),
     )  # fmt: skip
