@@ -87,6 +87,44 @@ def test_every_page_is_without_fault(lived, lang, size):
     assert looked_at(lived, lang, size, lambda one: one.path not in FAST) == {}
 
 
+#: What the keyboard stands on: nothing, or what is wrong with it.
+STOP = """() => {
+  const one = document.activeElement, box = one.getBoundingClientRect(), look = getComputedStyle(one), wrong = [];
+  if (one === document.body) return null;
+  const acts = one.matches("a, button, input, select, textarea, summary, [role=application]");
+  if (!acts && one.scrollWidth <= one.clientWidth && one.scrollHeight <= one.clientHeight) wrong.push("a stop at nothing");
+  if (look.outlineStyle === "none") wrong.push("no mark");
+  const [x, y] = [box.left + Math.min(box.width / 2, 30), (Math.max(box.top, 0) + Math.min(box.bottom, innerHeight)) / 2];
+  const over = document.elementFromPoint(x, y), own = over && (one.contains(over) || over.contains(one) || Array.from(one.labels || []).some((label) => label.contains(over)));
+  if (!own) wrong.push("hidden");
+  return wrong.map((what) => `${what}: ${one.outerHTML.slice(0, 90)}`);
+}"""
+
+
+@pytest.mark.parametrize(("lang", "size"), LOOKS)
+def test_the_keyboard_stands_at_nothing_hidden_unmarked_or_idle(lived, lang, size):
+    site, address, browser = lived
+    context, wrong, stops = context_of(browser, site, address, STUDENT, lang, size), {}, 0
+    page = context.new_page()
+    for one in shown(site):
+        if one.name != STUDENT:
+            continue
+        page.goto(address + one.address, wait_until="load")
+        page.evaluate("new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))")
+        found = []
+        for _ in range(150):
+            page.keyboard.press("Tab")
+            if (stop := page.evaluate(STOP)) is None:
+                break
+            stops += 1
+            found += stop
+        if found:
+            wrong[one.address] = found
+    context.close()
+    assert wrong == {}
+    assert stops > 300
+
+
 def test_a_page_that_a_student_went_back_to_is_not_sent_again(lived):
     """Without a script a form leads to a page with an address of its own, whichever button sends it."""
     site, _, _ = lived

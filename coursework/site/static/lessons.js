@@ -148,6 +148,7 @@
       before.remove();
       htmx.process(form);
     }
+    document.dispatchEvent(new Event("lesson:came"));
   }
   async function open() {
     const end = lesson.querySelector("[data-missing]");

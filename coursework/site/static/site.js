@@ -52,6 +52,14 @@
   const kept = document.querySelector("[data-kept-pages]");
   if (kept && window.caches) list(kept).catch(() => undefined);
 
+  // What is scrolled is reached by keys; while nothing of it is hidden it is no stop of the keyboard.
+  const scrolled = new ResizeObserver((all) => {
+    for (const { target: one } of all) one.tabIndex = one.scrollWidth > one.clientWidth || one.scrollHeight > one.clientHeight ? 0 : -1;
+  });
+  const watch = () => document.querySelectorAll(":is(math, pre, .wide-table)[tabindex]").forEach((one) => scrolled.observe(one));
+  for (const comes of ["htmx:afterSettle", "lesson:came"]) document.addEventListener(comes, watch);
+  watch();
+
   // Without a script a section stands in the whole lesson alone; with one the steps come as a file that the browser keeps.
   document.addEventListener("click", (event) => {
     const link = event.target.closest("a[href*='?whole#']");
