@@ -9,7 +9,8 @@ import pytest
 from site_assignments import ASSIGNMENT, dealt
 from site_browser import WIDTHS, context_of, desk_at, low, serious, told, too_wide, watched
 from site_pencil import Draughtsman
-from site_people import ZOE
+from site_people import MAX, ZOE
+from site_practising import right_answer
 from site_server import until
 
 import coursework
@@ -233,6 +234,39 @@ def test_the_surface_is_read_aloud_and_hit_by_a_thumb(pencil, exercise):
         assert too_wide(hand.page) == 0
         hand.page.set_viewport_size(dict(zip(("width", "height"), WIDTHS[size], strict=True)))
         hand.close()
+
+
+#: Type answers into boxes that have no choices.
+TYPE = """answers => { for (const [name, text] of Object.entries(answers)) {
+  const box = document.querySelector(`[name="a-${name}"]`);
+  box.value = text;
+  box.dispatchEvent(new Event("input", { bubbles: true }));
+} }"""
+#: Pairs of names in a drawing that lie on each other: of a glyph's box, which is taller than letters, a third is white.
+OVERLAPPING = """() => {
+  const names = Array.from(document.querySelectorAll("[id$=drawing-ink] > g:nth-child(2) text"), one => [one.textContent, one.getBoundingClientRect()]);
+  const meet = (a, b) => Math.min(a.right, b.right) - Math.max(a.left, b.left) > 1 && Math.min(a.bottom, b.bottom) - Math.max(a.top, b.top) > a.height / 3;
+  return names.flatMap(([name, a], k) => names.slice(0, k).filter(([, b]) => meet(a, b)).map(([other]) => `${name} on ${other}`));
+}"""
+
+
+@pytest.mark.parametrize("lang", ["fr", "en"])
+def test_names_in_a_drawing_do_not_lie_on_each_other_on_the_narrowest_screen(desk, lang):
+    class_, address, browser = desk
+    context, wrong = context_of(browser, class_, address, MAX, lang), {}
+    page = context.new_page()
+    page.set_viewport_size({"width": 320, "height": 640})
+    for name in [name for name in class_.site.course.names if class_.site.course[name].spec.drawing_mm]:
+        page.goto(f"{address}/practice/{name}")
+        variant = class_.site.variant(name, int(page.url.rpartition("/")[2]), lang)
+        page.evaluate(
+            TYPE, {part.id: right_answer(variant, part) for part in variant.parts if not part.choices}
+        )
+        page.evaluate("new Promise(done => requestAnimationFrame(() => requestAnimationFrame(done)))")
+        if found := page.evaluate(OVERLAPPING):
+            wrong[name] = found
+    context.close()
+    assert wrong == {}
 
 
 def test_a_paper_has_a_surface_for_each_exercise_that_is_drawn(desk):
