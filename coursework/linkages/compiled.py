@@ -24,6 +24,7 @@ from coursework.linkages.loop_chains import vector_code
 from coursework.linkages.points import Quantity, names_in
 from coursework.linkages.questions import QuestionWriter
 from coursework.linkages.sentences import exercise_text, solution_text, spoken
+from coursework.linkages.still_sides import refuse_still_sides
 from coursework.linkages.vectors import PAPER_MM
 from coursework.model import symbol_of
 
@@ -538,6 +539,10 @@ class CompiledLinkage:
         -------
         The module, which is also in ``sys.modules``.
         """
+        module = sys.modules[name] = self._executed(kind, name)
+        return module
+
+    def _executed(self, kind: str, name: str) -> ModuleType:
         source = self.exercise if kind == "exercises" else self.solution
         file = f"{next(_numbers)}/{self.linkage.path}:{kind}"
         module = ModuleType(name)
@@ -546,7 +551,6 @@ class CompiledLinkage:
         exec(
             compile(source, file, "exec"), module.__dict__
         )  # written from names and expressions that were read
-        sys.modules[name] = module
         return module
 
 
@@ -563,7 +567,13 @@ class _SourceLines:
 
 @lru_cache(maxsize=256)
 def _compiled(path: Path, shown: str, changed: int) -> CompiledLinkage:
-    return CompiledLinkage(read_linkage(path, shown))
+    made = CompiledLinkage(read_linkage(path, shown))
+    made.exercise, made.solution  # noqa: B018  # what makes no sense in the file is found while they are written
+    if polygons := made.questions.polygons:
+        refuse_still_sides(
+            polygons, *(made._executed(kind, path.stem) for kind in ("exercises", "solutions"))
+        )
+    return made
 
 
 def compiled(path: Path, shown: str = "") -> CompiledLinkage:
@@ -586,8 +596,7 @@ def compiled(path: Path, shown: str = "") -> CompiledLinkage:
         The file states what makes no sense, with the line.
     """
     with author_faults():
-        result = _compiled(path, shown or str(path), path.stat().st_mtime_ns)
-        result.exercise, result.solution  # noqa: B018  # what makes no sense in the file is found while they are written
+        result: CompiledLinkage = _compiled(path, shown or str(path), path.stat().st_mtime_ns)
         return result
 
 

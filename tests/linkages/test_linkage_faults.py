@@ -218,3 +218,27 @@ def test_a_file_that_is_not_utf8_is_told_in_a_line(tmp_path):
     path.write_bytes((FOLDER / "exercises" / "toggle.toml").read_text("utf-8").encode("latin-1"))
     with pytest.raises(BadInput, match="is not UTF-8"), mechanism_alone(path, open_course):
         pass
+
+
+@each_row(
+    "theta2, refused",
+    [
+        ('{ from = "30 deg", to = "150 deg", step = "5 deg" }', True),
+        ('{ from = "0 deg", to = "355 deg", step = "5 deg" }', False),
+    ],
+)
+def test_a_polygon_with_nothing_to_draw_is_refused_when_the_file_is_read(tmp_path, theta2, refused):
+    """A parallelogram's coupler never turns; where the crank goes round, that of the antiparallelogram does."""
+    path = tmp_path / "parallelogram.toml"
+    text = re.sub(r"theta2 = \{.*", f"theta2 = {theta2}", TOGGLE).replace(
+        ', "transmission_angle(B) > 25 deg"', ""
+    )
+    text = text.replace('B = "r3" }', 'B = "r1" }').replace(
+        'C", points = { B = "r4" }', 'C", points = { B = "r2" }'
+    )
+    path.write_text(text, "utf-8")
+    if not refused:
+        compiled(path)
+        return
+    with pytest.raises(BadCourse, match=r"parallelogram.toml, line \d+: V⃗_B/A is zero in all positions"):
+        compiled(path)
