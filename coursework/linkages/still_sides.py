@@ -33,7 +33,10 @@ def refuse_still_sides(polygons: Sequence[PolygonWriter], exercise: ModuleType, 
         A side has no length, with the line of the question.
     """
     for polygon in polygons:
-        made, sides = dict(vars(solution)), {f"length_of_side_{k}": side for k, side in enumerate(polygon.sides)}
+        made, sides = (
+            dict(vars(solution)),
+            {f"length_of_side_{k}": side for k, side in enumerate(polygon.sides)},
+        )
         for name, side in sides.items():
             exec(f"def {name}({', '.join(names_in(side.value))}):\n    return abs({side.value})", made)
         graph = Solution.of(exercise.__name__, solution, "").graph.with_functions({n: made[n] for n in sides})
