@@ -38,6 +38,7 @@ BANNED = {
         r"\b(acceleration|velocity) polygon of six links\b": "of a six-bar linkage",
         r"\bHavens planetary\b": "Havens' planetary",
         r"(?<!\*)\boverconstrain(ed|t)\b": "hyperstatic, static indeterminacy",
+        r"\bspeeds? \$\\omega": "angular velocity",
         r"\bvelocit(y|ies) of slip\b|\bslip velocit(y|ies)\b": "sliding velocity",
     },
     "fr": {
@@ -55,7 +56,7 @@ BANNED = {
         r"\bétau limeur\b|\bà quel des\b|\bmécanismes aux\b": "étau-limeur, auquel des, mécanismes à",
         r"\bhoeken\b": "Hoecken",
         r"(?<!système )(?<!systèmes )\bbielle-manivelle\b(?!, système)": "système bielle-manivelle",
-        r"\bvitesses?\s+de\s+rotation\b": "vitesse angulaire",
+        r"\bvitesses?\s+de\s+rotation\b|\bvitesses? \$\\omega(_\{?[\w/]+\}?)?\$": "vitesse angulaire",
         r"(?<!train )(?<!Havens, )\bplanétaire de Havens\b": "train planétaire de Havens",
         r"\bexactitude\b": "précision",
     },

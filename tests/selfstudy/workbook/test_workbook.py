@@ -224,12 +224,14 @@ def test_the_same_course_language_and_seed_give_the_same_bytes(small):
 
 
 #: Words that lead back to another question, in a list or a drill to none; an instant or a position is that of the figure.
+#: A noun that says nothing without what it is of.
+CLIPPED = re.compile(r"\b(component|coefficient|side|number|composante|membre|nombre|norme|magnitude)$", re.I)
 REFERRING = {
     "en": re.compile(
-        r"^(Its|Their|Likewise)\b|\b(same|these|those|they|them|with it)\b|\bthat (velocity|equation|instant)\b"
+        r"^(Its|Their|Likewise)\b|\b(same|these|those|they|them|with it|[Nn]umber of its|which it)\b|\bthat (velocity|equation|instant)\b"
     ),
     "fr": re.compile(
-        r"^(Son|Sa|Ses|De même)\b|\b(même|ces|elles?|eux)\b|\bcette (?!position)|\bcet (?!instant)|\bauquel il\b"
+        r"^(Son|Sa|Ses|De même)\b|\b(même|ces|elles?|eux|de (?:ses|son|sa))\b|\bcette (?!position)|\bcet (?!instant)|\bauquel il\b"
     ),
 }
 
@@ -245,6 +247,7 @@ def test_the_list_of_symbols_has_the_same_symbols_in_every_language(course):
         book = Book(lang, "", 0, (BookChapter(1, "", (BookSection(None, tuple(asked)),)),), True)
         assert all(row.meaning[0].isupper() for row in book.symbols)
         assert [row for row in book.symbols if REFERRING[lang].search(row.meaning)] == []
+        assert [row for row in book.symbols if CLIPPED.search(row.meaning)] == [], "of what?"
         listed.append({(row.symbol, one.handout.exercise) for row in book.symbols for one in row.exercises})
     first, second = listed
     assert first ^ second == set()
