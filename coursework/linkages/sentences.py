@@ -288,6 +288,8 @@ def _body(writer: SentenceWriter, name: str) -> str:
     far = points[others[0]]
     if len(others) == 1 and far.radius is None and far.y.is_zero:
         words |= {"B": others[0], "length": writer.latex(far.x)}
+        ends = start + others[0]  # what the length is called where the file states a number
+        words["long"] = "" if far.x.code == ends else writer.sentence("statement", "long", words)
         return writer.sentence("statement", "crank" if turned else "bar", words)
     places = [_frame_point(writer, p, points[p]) for p in others]
     words |= {"points": "".join(map(point_latex, [start, *others])), "places": writer.listed(places)}

@@ -1,5 +1,7 @@
 """The promises that mechanisms stated as files keep: ``coursework check`` over each that comes with the package."""
 
+import re
+
 import numpy as np
 import pytest
 from linkage_samples import NAMES, course
@@ -38,3 +40,14 @@ def test_joints_hold_where_nothing_moves_or_only_speeds_up(names):
             if not np.max(gaps) <= 1e-12:
                 wide[name, tuple(still)] = gaps
     assert wide == {}
+
+
+def test_no_sheet_says_that_a_length_is_itself():
+    """A number in a file is called by its ends: its value stands among the data, and there is nothing more to say of it."""
+    said = {}
+    for name in NAMES:
+        for lang in ("fr", "en"):
+            text = course()[name].variant(1).in_language(lang).handout().statement
+            if found := re.findall(r"\b(\w+) = \1\b", text):
+                said[name, lang] = found
+    assert said == {}
