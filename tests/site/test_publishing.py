@@ -492,6 +492,10 @@ def test_a_form_shows_parts_points_and_pages_and_writes_the_file_that_it_issues(
     assert (told.date, told.duration, told.versions, told.names) == (
         date(2026, 12, 4), {"": "1 h 30"}, 2, ("grashof", "slotted_mechanism"),
     )  # fmt: skip
+    asked = re.compile(r"<details( open)?><summary>Questions asked: (\d+)</summary>")
+    assert asked.findall(page.text) == [(" open", "3"), (" open", "2")]
+    # From a mechanism's page its questions are chosen already: they stand folded away.
+    assert asked.findall(staff.get("/desk/assignments/new?exercise=slotted_mechanism").text) == [("", "10")]
     assert told.exercises[1].parts == ("rA", "theta4")
     assert told.exercises[1].points == {"rA": 2.5, "theta4": 1.0}
     number = dealt_by(class_of_three, staff, staff.fill("/desk/assignments/new", {**CHOSEN, "accounts": "1"}))
