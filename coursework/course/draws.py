@@ -23,7 +23,7 @@ import numpy as np
 
 from coursework.course.secrecy import Secret
 from coursework.errors import BadCourse, CourseworkError, MissingQuantity, Starved, nearest
-from coursework.messages import Message
+from coursework.messages import Message, as_message
 from coursework.model import Bound, Detectable, Exercise, GivenSpec, Part
 from coursework.quantities.graph import Graph
 
@@ -340,7 +340,7 @@ class Draws:
         """Return a constraint as messages name it: the condition that a mechanism's file states, or its name."""
         stated = next((c for c in self.spec.constraints if getattr(c, "__name__", "") == constraint), None)
         said = getattr(stated, "said", "")
-        return Message(said) if said else constraint
+        return as_message(said) if said else constraint
 
     def acceptance(self, count: int = 4096) -> float:
         """Return the share of candidates that are variants."""

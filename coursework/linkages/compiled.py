@@ -7,6 +7,7 @@ import linecache
 import os
 import sys
 import weakref
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
 from pathlib import Path
@@ -18,7 +19,7 @@ from coursework.linkages.entries import GROUND, GivenEntry, LinkageFile, Place, 
 from coursework.linkages.exact_loops import keep_digits
 from coursework.linkages.expressions import ExpressionReader, QuantityExpression
 from coursework.linkages.formulas import FormulaWriter
-from coursework.linkages.groups import Dyad
+from coursework.linkages.groups import Dyad, group_joints
 from coursework.linkages.linkage_file import author_faults, read_linkage
 from coursework.linkages.loop_chains import vector_code
 from coursework.linkages.points import Quantity, names_in
@@ -43,6 +44,7 @@ from coursework.linkages.large import LargeGroup
 """
 _EXERCISE_IMPORTS = """\
 from coursework.figures import Figure, angle_mark, circle, ground_pivot, line, link, pin, point, rail, slider, slot_link
+from coursework.messages import Message
 from coursework.model import Driver, Exercise, Jack, Part, chosen, detectable, drawn, fixed
 """
 _SOLUTION_IMPORTS = """from coursework.figures.polygons import (
@@ -165,13 +167,7 @@ class CompiledLinkage:
         linkage, formulas = self.linkage, self.formulas
         results: list[tuple[str, str]] = []
         helpers = ""
-        if self.formulas.followed_turns:
-            results.append(
-                _condition(
-                    "the_mechanism_closes",
-                    " & ".join(f"np.isfinite({t})" for t in self.formulas.followed_turns),
-                )
-            )
+        results += self._closing()
         varies = any(entry.value is None for entry in linkage.given.values()) or any(
             e.is_drawn for e in formulas.modes.values()
         )
@@ -216,7 +212,7 @@ class CompiledLinkage:
             except CourseworkError as fault:
                 raise linkage.refused(("given", "require"), fault.args[0]) from fault
             name = f"required_{number + 1}"
-            results.append(_condition(name, found.code, text))
+            results.append(_condition(name, found.code, repr(text)))
         if any("crank_turns" in code for _, code in results):
             leaves = [n for n in self._leaves(self.formulas.followed_turns) if n != linkage.moved]
             graph = "".join(f"{q.name}, " for q in formulas.transitive(self.formulas.followed_turns))
@@ -236,6 +232,20 @@ class CompiledLinkage:
                 (f"detectable({m!r}, {', '.join(map(repr, wanted[m]))})", "") for m in modes if wanted.get(m)
             ]
         return results, helpers
+
+    def _closing(self) -> Iterator[tuple[str, str]]:
+        """Yield a constraint for each group: that its bodies meet, wherever the groups before it do."""
+        before: list[str] = []
+        for number, group in enumerate(self.formulas.groups, 1):
+            own = [self.formulas.turns[body] for body in group.bodies]
+            turns = [t for t in dict.fromkeys(own) if t in self.formulas.followed_turns and t not in before]
+            if not turns:
+                continue
+            code = _all_finite(turns)
+            name = f"group_{number}_closes"
+            said = f"Message('bodies {{bodies}} meet at {{joints}}', bodies={', '.join(group.bodies)!r}, joints={', '.join(group_joints(group, self.linkage))!r})"
+            yield _condition(name, f"{code} | ~({_all_finite(before)})" if before else code, said)
+            before += turns
 
     def _affected(self, numbers: list[str]) -> dict[str, list[str]]:
         """Return the asked numbers that depend on the side of each assembly, by mistake."""
@@ -640,10 +650,14 @@ def _plain(quantity: Quantity) -> str:
     return f"def {quantity.name}({', '.join(quantity.needs)}):\n    return {quantity.code}"
 
 
+def _all_finite(names: Sequence[str]) -> str:
+    return " & ".join(f"np.isfinite({name})" for name in names)
+
+
 def _condition(name: str, code: str, said: str = "") -> tuple[str, str]:
-    """Return a constraint as code; ``said`` is what messages call it, else the words of its name."""
+    """Return a constraint as code; ``said`` is what messages call it, as code, else the words of its name."""
     function = f"def {name}({', '.join(names_in(code))}):\n    return {code}"
-    return name, f"{function}\n\n\n{name}.said = {said or name.replace('_', ' ')!r}"
+    return name, f"{function}\n\n\n{name}.said = {said or repr(name.replace('_', ' '))}"
 
 
 def _given(entry: GivenEntry) -> str:

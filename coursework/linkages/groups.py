@@ -56,6 +56,17 @@ class HigherGroup:
 Group = Dyad | Wheel | HigherGroup
 
 
+def group_joints(group: Group, linkage: LinkageFile) -> tuple[str, ...]:
+    """Return the points at which the bodies of a group meet: its inner joints, and of a wheel its pin."""
+    if isinstance(group, Wheel):
+        return (group.at,)
+    if isinstance(group, Dyad):
+        return (group.inner if isinstance(group.inner, str) else group.inner.at,)
+    bodies = {*group.bodies}
+    pins = (point for point, held in linkage.pins.items() if len(bodies.intersection(held)) > 1)
+    return (*pins, *(s.at for s in linkage.slides.values() if {s.of, s.on} <= bodies))
+
+
 def groups_of(linkage: LinkageFile) -> tuple[tuple[Group, ...], int]:
     """Return the groups in order of assembly, and the class of the mechanism.
 

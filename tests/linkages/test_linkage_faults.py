@@ -9,7 +9,7 @@ from tables import each_row
 
 from coursework import open_course
 from coursework.authoring.linkage_files import mechanism_alone
-from coursework.errors import BadCourse, BadInput
+from coursework.errors import BadCourse, BadInput, Starved
 from coursework.linkages.compiled import compiled
 from coursework.messages import localised
 
@@ -179,18 +179,29 @@ def test_a_fault_is_told_in_one_line_with_its_place(name, text, other, line, pie
     assert french[1] != told.partition(": ")[2]
 
 
-def test_an_assembly_that_exists_for_no_draw_says_which_constraint_refuses(tmp_path):
-    from coursework.errors import Starved
-
-    folder = tmp_path / "course"
-    (folder / "exercises").mkdir(parents=True)
-    text = TOGGLE.replace('r4 = "150 mm"', 'r4 = "2 mm"').replace(
-        'require = ["r2 < r4", "is_crank(2)", "transmission_angle(B) > 25 deg"]', ""
+@each_row(
+    ("name", "lengths", "refused"),
+    [
+        ("toggle", {"r4": "2 mm"}, "bodies 3, 4 meet at B"),
+        ("two_loops", {"r6": "14 mm", "r7": "14 mm"}, "bodies 6, 7 meet at E"),
+        ("class_three", {"r5": "12 mm"}, "bodies 3, 4, 5, 6 meet at E, F, G"),
+    ],
+)
+def test_an_assembly_that_exists_for_no_draw_names_the_joints_that_stay_open(
+    tmp_path, name, lengths, refused
+):
+    """Of the first group that does not close, and of none that hangs on it."""
+    exercises = tmp_path / name / "exercises"
+    exercises.mkdir(parents=True)
+    text = re.sub(
+        r"require = .*|polygon = .*", "", (FOLDER / "exercises" / f"{name}.toml").read_text("utf-8")
     )
-    text = text.replace('polygon = ["velocity", "acceleration"]', "")
-    (folder / "exercises" / "toggle.toml").write_text(text, "utf-8")
-    with pytest.raises(Starved, match="the mechanism closes"):
-        open_course(folder)["toggle"].variant(0)
+    for length, value in lengths.items():
+        text = re.sub(rf"^{length} = .*", f'{length} = "{value}"', text, flags=re.MULTILINE)
+    (exercises / f"{name}.toml").write_text(text, "utf-8")
+    with pytest.raises(Starved) as caught:
+        open_course(exercises.parent)[name].variant(0)
+    assert re.findall(r"bodies [^(]* meet at [A-Z, ]*[A-Z]", str(caught.value)) == [refused]
 
 
 def test_a_changed_file_is_compiled_anew(tmp_path):
