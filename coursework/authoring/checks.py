@@ -6,9 +6,11 @@ Used by ``coursework check`` on any course folder, and by this project's own tes
 from __future__ import annotations
 
 import math
+import re
 from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from functools import partial
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -67,21 +69,25 @@ def check(
     report = CheckReport(exercise.name)
     if not (check_needs(exercise, report) and check_reals(exercise, report)):
         return report
-    steps: Sequence[Callable[[], None]] = (
-        lambda: check_texts(exercise, report),
-        lambda: check_symbols(exercise, report),
-        lambda: check_known(exercise, report),
-        lambda: _check_variants(exercise, variants, report, submit),
-        lambda: check_rendering(exercise, rendered, report),
-    )
-    for step in steps:
-        try:
-            step()
-        except _NotAnswered:
-            raise
-        except Exception as fault:  # perhaps an author's slip in a function of the course; the check goes on
-            report.fail(_problem(fault))
+    _try(report, check_texts, exercise)
+    _try(report, check_translations, exercise)
+    _try(report, check_symbols, exercise)
+    _try(report, check_known, exercise)
+    _try(report, _check_variants, exercise, variants, submit)
+    _try(report, check_rendering, exercise, rendered)
     return report
+
+
+def _try(report: CheckReport, step: Callable[..., None], *arguments: Any) -> bool:
+    """Return whether a check came to its end; report what stopped it, perhaps an author's slip in a function of the course."""
+    try:
+        step(*arguments, report)
+    except _NotAnswered:
+        raise
+    except Exception as fault:
+        report.fail(_problem(fault))
+        return False
+    return True
 
 
 class _NotAnswered(Exception):
@@ -125,7 +131,7 @@ def check_all(
 
 
 _WORTH_PROCESSES = 50  #: variants an exercise; fewer are done before a process has started
-_TOGETHER = 8  #: variants that a process answers at a time
+_BLOCK = 8  #: variants that a process answers at a time
 
 
 def _length(course: Course, name: str) -> int:
@@ -160,7 +166,7 @@ def _check_one(course: Course[Any], name: str, variants: int, submit: Submit | N
         return report
 
 
-def _check_variants(exercise: CourseExercise, count: int, report: CheckReport, submit: Submit | None) -> None:
+def _check_variants(exercise: CourseExercise, count: int, submit: Submit | None, report: CheckReport) -> None:
     report.acceptance = exercise.draws.acceptance()
     lang = exercise.languages[0]
     try:
@@ -176,14 +182,14 @@ def _check_variants(exercise: CourseExercise, count: int, report: CheckReport, s
     pending = _answered(exercise, drawn, submit)
     check_arrays(exercise, drawn, report)
     check_rounding_students(exercise, drawn, report)
-    later, problem = _tried(_check_all_together, drawn, exercise.name)  # while others answer
+    later = CheckReport(exercise.name)
+    _check_together(drawn, later)  # while others answer
     for result in pending:
         try:
-            answered = result()
+            report.add(result())
         except Exception as fault:
             raise _NotAnswered(fault) from fault
-        _merge(report, *answered)
-    _merge(report, later, problem)
+    report.add(later)
     for name in exercise.solution.mistakes:
         tally = report.mistakes.setdefault(name, Counter())
         if count >= 50 and not tally["shown"]:
@@ -192,61 +198,46 @@ def _check_variants(exercise: CourseExercise, count: int, report: CheckReport, s
 
 def _answered(
     exercise: CourseExercise, drawn: Sequence[Variant], submit: Submit | None
-) -> list[Callable[[], tuple[CheckReport, str]]]:
+) -> list[Callable[[], CheckReport]]:
     """Return functions that return the reports on the answers to some variants each."""
     if submit is None:
-        return [partial(_tried, _check_each, drawn, exercise.name)]
+        return [partial(_answers_tried, exercise.name, drawn)]
     root, seeds = str(exercise.folder.root), [variant.seed for variant in drawn]
-    blocks = [seeds[k : k + _TOGETHER] for k in range(0, len(seeds), _TOGETHER)]
+    blocks = [seeds[k : k + _BLOCK] for k in range(0, len(seeds), _BLOCK)]
     return [submit(_answered_elsewhere, root, exercise.name, block).result for block in blocks]
 
 
-def _answered_elsewhere(root: str, name: str, seeds: Sequence[int]) -> tuple[CheckReport, str]:
+def _answered_elsewhere(root: str, name: str, seeds: Sequence[int]) -> CheckReport:
     exercise = opened(root, Variant)[name]
     lang = exercise.languages[0]
-    return _tried(_check_each, [exercise.variant(seed, lang, (ALL,)) for seed in seeds], name)
+    return _answers_tried(name, [exercise.variant(seed, lang, (ALL,)) for seed in seeds])
 
 
-def _tried(
-    work: Callable[[Sequence[Variant], CheckReport], None], drawn: Sequence[Variant], name: str
-) -> tuple[CheckReport, str]:
-    """Return the report of a function on variants, up to the problem at which it stopped, if any."""
+def _answers_tried(name: str, drawn: Sequence[Variant]) -> CheckReport:
+    """Return the report on the answers to some variants; a check that cannot go on leaves the others to do so."""
     report = CheckReport(name)
-    try:
-        work(drawn, report)
-    except Exception as fault:
-        return report, _problem(fault)
-    return report, ""
-
-
-def _merge(report: CheckReport, later: CheckReport, problem: str) -> None:
-    report.add(later)
-    if problem:
-        raise CourseworkError(problem)
-
-
-def _check_each(drawn: Sequence[Variant], report: CheckReport) -> None:
+    left = [check_solves, check_right_answers, check_mistakes, check_slips, check_follow_through]
     for variant in drawn:
-        key = variant.key
-        check_solves(variant, key, report)
-        check_right_answers(variant, key, report)
-        check_mistakes(variant, key, report)
-        check_slips(variant, key, report)
-        check_follow_through(variant, key, report)
+        left = [each for each in left if _try(report, each, variant, variant.key)]
+    return report
 
 
-def _check_all_together(drawn: Sequence[Variant], report: CheckReport) -> None:
+def _check_together(drawn: Sequence[Variant], report: CheckReport) -> None:
     for variant in drawn[:NONSENSICAL]:
-        check_nonsense(variant, report)
-    check_usual_errors(drawn, report)
-    check_knowledge(drawn, report)
-    check_guesses(drawn, report)
-    check_prices(drawn, report)
-    check_loops(drawn[0], report)
-    check_mechanism(drawn, report)
-    check_formulas(drawn, report)
-    check_units(drawn, report)
-    check_alone(drawn, report)
+        if not _try(report, check_nonsense, variant):
+            break
+    _try(report, check_loops, drawn[0])
+    for step in (
+        check_usual_errors,
+        check_knowledge,
+        check_guesses,
+        check_prices,
+        check_mechanism,
+        check_formulas,
+        check_units,
+        check_alone,
+    ):
+        _try(report, step, drawn)
 
 
 def _describe(drawn: Sequence[Variant], report: CheckReport) -> None:
@@ -304,6 +295,33 @@ def check_texts(exercise: CourseExercise, report: CheckReport) -> None:
             if not section_text.section(f"mistake {name}").text:
                 report.fail(f"{section_text.source}: mistake {name} is told in no words")
         report.counts["texts"] += 1
+
+
+_FORMULA = re.compile(r"\$[^$]*\$")
+_WORD = re.compile(r"[^\W\d_]{2,}")
+_TELLING = 6  #: words outside formulas that are never the same in two languages
+
+
+def check_translations(exercise: CourseExercise, report: CheckReport) -> None:
+    """Check that no text is the same in two languages: one that was copied and not translated yet."""
+    first: dict[str, str] = {}  # the file, by the text
+    for lang in exercise.languages:
+        variant = exercise.variant(0, lang)
+        for text in (
+            variant.text,
+            exercise.texts.text("solutions", lang, _every_name(exercise, variant)),
+        ):
+            pieces = {"the statement": text.opening} | {
+                f"section '## {name}'": section.text for name, section in text.sections.items()
+            }
+            for name, piece in pieces.items():
+                if len(_WORD.findall(_FORMULA.sub(" ", piece))) < _TELLING:
+                    continue
+                source = first.setdefault(piece, text.source)
+                if source != text.source and Path(source).parent == Path(text.source).parent:
+                    report.fail(
+                        f"{text.source}: {name} says the same as in {Path(source).name}; translate it"
+                    )
 
 
 def _every_name(exercise: CourseExercise, variant: Variant) -> dict[str, object]:

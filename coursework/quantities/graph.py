@@ -126,27 +126,39 @@ def _run(steps: Sequence[tuple], values: dict[str, Value]) -> None:
             values[name] = function(*[values[a] for a in arguments])
         except CourseworkError:
             raise
-        except (ArithmeticError, ValueError) as fault:
-            if "truth value of an array" in str(fault):
-                raise BrokenFunction(_branches(function, fault)) from fault
+        except Exception as fault:
+            if advice := next((advice for sign, advice in _FOR_ARRAYS.items() if sign in str(fault)), None):
+                raise BrokenFunction(_at_its_line(function, fault, *advice)) from fault
+            if not isinstance(fault, ArithmeticError | ValueError):
+                raise BrokenFunction(
+                    f"{_location(function)} fails: {type(fault).__name__}: {fault}"
+                ) from fault
             text = ", ".join(f"{a} = {values[a]}" for a in arguments)[:300]
             raise Undefined(
                 "{name} does not exist for {text} ({fault})", name=name, text=text, fault=fault
             ) from fault
-        except Exception as fault:
-            raise BrokenFunction(f"{_location(function)} fails: {type(fault).__name__}: {fault}") from fault
 
 
-def _branches(function: Callable[..., Value], fault: Exception) -> str:
-    """Return the message for a function that branches on an array with ``if``."""
+#: Signs, in numpy's messages, that a function is written for one number, and for each the fault and what would do.
+_FOR_ARRAYS = {
+    "truth value of an array": (
+        "branches on an array",
+        "use np.where(condition, value where it holds, value elsewhere), and & | ~ for and, or, not",
+    ),
+    "to Python scalars": (
+        "makes one number of an array",
+        "use the functions of coursework.degrees or of numpy, not those of math, float() or int()",
+    ),
+}
+
+
+def _at_its_line(function: Callable[..., Value], fault: Exception, problem: str, advice: str) -> str:
+    """Return the message for a function that is written for one number, with the line that fails on an array."""
     code = getattr(function, "__code__", None)
     frames = traceback.extract_tb(fault.__traceback__)
     home = Path(code.co_filename).parent if code else Path()
     line = next((f for f in reversed(frames) if Path(f.filename).parent == home), frames[-1])
-    return (
-        f"{_location(function)} branches on an array, at line {line.lineno} of {Path(line.filename).name}: {line.line}; "
-        "use np.where(condition, value where it holds, value elsewhere), and & | ~ for and, or, not"
-    )
+    return f"{_location(function)} {problem}, at line {line.lineno} of {Path(line.filename).name}: {line.line}; {advice}"
 
 
 def _missing(results: Mapping[str, str]) -> MissingQuantity:

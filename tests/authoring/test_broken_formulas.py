@@ -28,6 +28,15 @@ def test_a_choice_by_if_is_told_with_its_line_and_what_would_do(small_course):
     assert any(failure.startswith(TOLD) for failure in check(exercise, 5).failures)
 
 
+def test_a_function_of_math_is_told_with_what_would_do(small_course):
+    exercise = with_v(small_course, "    import math\n    return math.hypot(r * omega, 0)\n")
+    assert exercise.solve(r=2, omega=11, only="v") == {"v": 22}
+    (failure,) = check(exercise, 5).failures
+    told = "v (crank_pin.py, line 20) makes one number of an array, at line 22 of crank_pin.py: return math.hypot("
+    assert failure.startswith(told)
+    assert "coursework.degrees" in failure
+
+
 def test_a_choice_in_a_helper_is_told_by_the_line_of_the_helper():
     def helper(x):
         return 1 if x > 0 else -1

@@ -124,6 +124,26 @@ def test_texts_in_a_language_that_the_engine_does_not_speak_are_a_failure(small_
     assert [f.split(" ")[0] for f in told] == ["exercises/crank_pin.es.md.j2"]
 
 
+def test_a_text_that_was_copied_and_not_translated_is_a_failure(small_course):
+    for kind in ("exercises", "solutions"):
+        shutil.copy(small_course / kind / "crank_pin.fr.md.j2", small_course / kind / "crank_pin.en.md.j2")
+    told = [f for f in checked(small_course).failures if "translate it" in f]
+    assert (
+        told[0]
+        == "exercises/crank_pin.fr.md.j2: the statement says the same as in crank_pin.en.md.j2; translate it"
+    )
+    assert any("section '## mistake turns_for_radians'" in f for f in told)
+
+
+def test_a_check_that_cannot_go_on_leaves_the_others_to_tell_what_they_find(small_course):
+    path = small_course / "solutions" / "crank_pin.py"
+    text = path.read_text("utf-8").replace("def residual", "def _residual")
+    path.write_text(text.replace("return r * omega\n", "return r * omega**2\n", 1), "utf-8")
+    failures = checked(small_course).failures
+    assert any("states no residual" in f for f in failures)
+    assert any(f.startswith("v is declared in mm/s, and its formula gives mm/s^2") for f in failures)
+
+
 def test_a_solution_without_its_text_is_told_by_its_folder(small_course):
     (small_course / "solutions" / "crank_pin.en.md.j2").unlink()
     failures = checked(small_course).failures
