@@ -429,7 +429,10 @@ def check_solves(variant: Variant, key: Key, report: CheckReport) -> None:
             continue
         value = key.reference[part.quantity]
         if part.sort.is_number and part.has_margin and part.atol == 0 and value == 0:
-            report.fail(f"seed {variant.seed}: {part.id} is 0 and has no absolute tolerance")
+            report.fail(
+                f"seed {variant.seed}: {part.id} is 0 and has no absolute tolerance: state Part({part.id!r}, atol=…), or a "
+                "constraint that refuses such a draw"
+            )
     for number, (value, size) in enumerate(_residuals(variant), start=1):
         report.counts["residuals"] += 1
         if not value <= RESIDUAL * size:
