@@ -260,9 +260,7 @@ def test_an_example_that_was_checked_stands_as_it_was_left_on_every_device(class
     for lang, end in product(("en", "fr"), ("", "?whole")):
         page = class_.browser(MAX, lang).get(f"/lessons/{LESSON}{end}").text
         form = next(
-            one
-            for one in re.findall(r'<form class="blanks".*?</form>', page, re.DOTALL)
-            if "13 pears" in one
+            one for one in re.findall(r'<form class="blanks".*?</form>', page, re.DOTALL) if "13 pears" in one
         )
         assert "pears" in form.partition('class="told"')[2]
         assert page.count('value="13 pears"') == 1
