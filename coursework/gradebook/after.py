@@ -265,6 +265,12 @@ class Exam:
         """Return the number of a question on the papers, such as ``2.3``."""
         return self._numbers_on_papers[exercise, part]
 
+    def label(self, exercise: str, part: str) -> str:
+        """Return the number of a question, with its part where other papers ask another question of this number."""
+        number = self.number(exercise, part)
+        is_shared = [*self._numbers_on_papers.values()].count(number) > 1
+        return f"{number} {part}" if is_shared else number
+
     @cached_property
     def _numbers_on_papers(self) -> dict[Question, str]:
         return numbers_on_papers(self.questions, self.issued)

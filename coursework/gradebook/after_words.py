@@ -75,7 +75,7 @@ def error_text(exam: Exam, exercise: str, verdict: str, lang: str) -> str:
 def _place(exam: Exam, steps: Sequence[Decision], lang: str) -> str:
     texts, step = words(lang)["after"]["places"], steps[0]
     numbers = [
-        exam.number(one.exercise, one.part) for one in steps if (one.exercise, one.part) in exam.questions
+        exam.label(one.exercise, one.part) for one in steps if (one.exercise, one.part) in exam.questions
     ]
     if numbers:
         more = [] if len(numbers) <= _NUMBERS else [f"… ({len(numbers)})"]

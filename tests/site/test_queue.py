@@ -91,6 +91,9 @@ def test_a_question_has_its_number_on_the_papers_everywhere(tmp_path):
         assert numbers == [f"1.{k}" for k in range(1, len(numbers) + 1)]
     third = {variant.part_ids[2] for variant in both.values()}
     assert {part for _, part in after_exam.exam_of(now).called("1.3")} == third
+    changed = {"kind": "bonus", "question": f"{EXERCISE}/{first.part_ids[2]}"}
+    preview = desk.browser(TEACHER).get(f"/desk/{number}/after", params=changed).text
+    assert f"Question 1.3 {first.part_ids[2]}:" in preview
     page = desk.browser(TEACHER, "fr").get(f"/desk/{number}").text
     assert (page.count(">1.3<"), ">1.10<" in page) == (2, False)
 
