@@ -1,9 +1,10 @@
 """Practice in Chromium: a sheet fits its screen, pieces come in place, a page without script does; what is kept: test_keeping_browser.py."""
 
 import pytest
-from site_browser import low, serious, too_wide, windows
+from site_browser import low, serious, told, too_wide, windows
 from site_people import ZOE
 from site_practising import right_answer
+from site_server import until
 
 pytestmark = pytest.mark.e2e
 
@@ -72,3 +73,21 @@ def test_a_thumb_hits_what_there_is(window):
     page.click("#below-a-rA button[name=hint]")
     page.wait_for_selector("#hints-a-rA .hint-step")
     assert low(page) == []
+
+
+def test_what_a_button_did_not_do_without_a_network_stays_told_until_more_is_typed(desk, window):
+    page = window("havens_planetary")
+    part = next(p for p in variant_of(desk, page).parts if p.sort.is_number)
+    page.context.set_offline(True)
+    page.fill(f"#answer-a-{part.id}", "12")
+    told(page, "what you type stays")
+    page.locator(f"#below-a-{part.id} button[name=check]").click()
+    told(page, "nothing was checked")
+    tries = []
+    page.on("requestfailed", lambda one: tries.append(one.url) if one.url.endswith("/draft") else None)
+    page.evaluate("dispatchEvent(new Event('online'))")  # what is kept is tried again, in vain
+    until(lambda: page.wait_for_timeout(50) or tries)
+    page.wait_for_timeout(300)
+    told(page, "nothing was checked")
+    page.fill(f"#answer-a-{part.id}", "123")
+    told(page, "what you type stays")

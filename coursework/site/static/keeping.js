@@ -178,7 +178,8 @@
       this.pending = {};               // what it has not
       this.when = 0;                   // of the last typing: of what two pages left, the later typed stands in the box
       this.flights = 0;
-      form.addEventListener("keep:tell", (event) => this.tell(event.detail.text));
+      this.isTold = false;             // what was pressed said why nothing came of it: that stays until more is typed
+      form.addEventListener("keep:tell", (event) => { this.tell(event.detail.text); this.isTold = true; });
       form.addEventListener("keep:renew", () => this.renew());
       this.restore();
       this.recall().catch(() => undefined);
@@ -260,6 +261,7 @@
         this.when = Date.now();
       }
       const stored = this.store();
+      if (any) this.isTold = false;
       if (any) this.tell(stored ? this.said.saving : this.said.not_here);
       this.soon(PAUSE);
     }
@@ -279,7 +281,7 @@
     fail(told) {
       const stored = this.store(), said = this.said;
       if (told.fault === "signed_out") this.tell(said.signed_out, "/sign-in", said.sign_in);
-      else if (told.fault === "offline") this.tell(stored ? said.offline : said.nowhere);
+      else if (told.fault === "offline") { if (!this.isTold || !stored) this.tell(stored ? said.offline : said.nowhere); }
       else this.tell(told.says || said[told.fault]);
       if (!["closed", "refused"].includes(told.fault)) this.again(told.after);
     }
