@@ -128,11 +128,50 @@ accelerations = ["alpha4", "b_ddot"]
 torque = { load = { on = "4", moment = "9 N*m" } }
 """,
 )
+#: Hart's inversor: of a crossed parallelogram three points on a parallel to its diagonals are inverse to each other.
+HART = file_of(
+    'a = { from = "160 mm", to = "180 mm", step = "2 mm" }\nb = "80 mm"\nc = "26 mm"\n'
+    'theta2 = { from = "-25 deg", to = "25 deg", step = "1 deg" }\nomega2 = "5 rad/s"\nalpha2 = "5 rad/s^2"',
+    'O = ["0 mm", "0 mm"]\nS = ["c", "0 mm"]',
+    """2 = { at = "S", angle = "theta2", points = { P = "c" } }
+3 = { points = { A = "0 mm", O = "b/4", B = "b" } }
+4 = { points = { A = "0 mm", P = "a/4", D = "a" } }
+5 = { points = { B = "0 mm", Q = "3*a/4", E = "a" } }
+6 = { points = { D = "0 mm", E = "b" } }""",
+    '[assembly]\nA = "right of O -> P"\nE = "right of B -> D"',
+    ASK.replace('"theta4", "B"]', '"Q"]')
+    .replace('"omega4", "V_B"', '"V_Q"')
+    .replace('"alpha4", "a_B"', '"a_Q"')
+    .replace('moment = "9 N*m"', 'moment = "2 N*m"'),
+)
+#: A desk lamp of two parallelograms: the plate between them never turns, and a stay lowers the second as the first is raised.
+LAMP = file_of(
+    'b = "40 mm"\nr2 = { from = "320 mm", to = "380 mm", step = "5 mm" }\nr5 = { from = "280 mm", to = "340 mm", step = "5 mm" }\n'
+    'k = "90 mm"\ntheta2 = { from = "60 deg", to = "110 deg", step = "1 deg" }\nomega2 = "0.5 rad/s"\nalpha2 = "1 rad/s^2"',
+    'O = ["0 mm", "0 mm"]\nC = ["b", "0 mm"]',
+    """2 = { at = "O", angle = "theta2", points = { A = "r2", U = "r2 - k" } }
+4 = { at = "C", points = { B = "r2" } }
+3 = { points = { A = "0 mm", B = "b", E = ["0 mm", "b"] } }
+5 = { points = { B = "0 mm", F = "r5", V = "k" } }
+8 = { points = { U = "0 mm", V = "150 mm" } }
+6 = { points = { E = "0 mm", G = "r5" } }
+7 = { points = { F = "0 mm", G = "sqrt(2) * b", H = ["0 mm", "-60 mm"] } }""",
+    '[assembly]\nB = "left of A -> C"\nV = "right of U -> B"\nG = "left of F -> E"',
+    """[ask]
+mobility = true
+positions = ["theta5", "H"]
+velocities = ["omega5", "V_H"]
+accelerations = ["a_H"]
+torque = { load = { on = "H", force = "12 N", angle = "-90 deg" } }
+""",
+)
 LINKAGES = {
     "stephenson": STEPHENSON,
     "trammel": TRAMMEL,
     "oldham": OLDHAM,
     "watt": WATT,
+    "hart": HART,
+    "lamp": LAMP,
     "slider": SLIDER,
     "inverted": INVERTED,
     "four_bar": bar(152.4, 50.8, 177.8, 228.6),
@@ -232,6 +271,13 @@ def test_results_that_books_print_and_theorems_say(course):
     watt = course["watt"]
     M = watt.solve(only="M", **(dict(watt.variant(0).given) | {"theta2": np.linspace(-10.0, 10.0, 41)}))["M"]
     assert np.ptp(M[:, 0]) < 1e-3 * np.ptp(M[:, 1])
+    given = {"a": 168.0, "b": 80.0, "c": 26.0}
+    Q = course["hart"].solve(only="Q", **given, theta2=np.linspace(-25.0, 25.0, 11))["Q"]
+    line = (
+        3 / 16 * (given["a"] ** 2 - given["b"] ** 2) / (2 * given["c"])
+    )  # the inverse of a circle through its centre
+    assert Q[:, 0] == pytest.approx(np.full(11, line), rel=1e-12)
+    assert np.ptp(Q[:, 1]) > 30
 
 
 @pytest.mark.slow
