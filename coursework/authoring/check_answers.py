@@ -245,9 +245,12 @@ def _written(value: Any) -> Any:
 def _check_recognised(variant: Variant, sheet: Mapping[str, tuple[str, Any]], report: CheckReport) -> None:
     """Check that the mistakes on a sheet are recognised; by part the name of each, if any, and the answer that it gives."""
     marking = grade(variant, {part_id: answer for part_id, (_, answer) in sheet.items()})
+    exchanges = {
+        name for mark in marking.values() if "slip:exchanged" in mark.matches for name in mark.mistakes
+    }
     for part_id, (name, answer) in sheet.items():
-        if not name:
-            continue
+        if not name or (name in exchanges and marking[part_id].verdict == "correct"):
+            continue  # two answers that are exchanged leave the others to the same judge right
         mark = marking[part_id]
         if mark.in_other_order:
             continue  # it is the right answer of the other assembly

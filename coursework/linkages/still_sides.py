@@ -59,7 +59,7 @@ def refuse_still_sides(polygons: Sequence[PolygonWriter], exercise: ModuleType, 
 
 def _samples(given: Mapping[str, Any]) -> dict[str, Any]:
     """Return values of what is given, from all of its ranges, and of what is chosen all cases in turn."""
-    random, found = np.random.default_rng(1), {}
+    rng, found = np.random.default_rng(1), {}
     for name, spec in given.items():
         if spec.is_choice:
             found[name] = np.resize(np.array(spec.choices), _SAMPLES)
@@ -67,7 +67,7 @@ def _samples(given: Mapping[str, Any]) -> dict[str, Any]:
             found[name] = np.full(_SAMPLES, float(spec.default))
         else:
             low, high = (_bound(bound, found) for bound in (spec.low, spec.high))
-            found[name] = low + (high - low) * random.random(_SAMPLES)
+            found[name] = low + (high - low) * rng.random(_SAMPLES)
     return found
 
 

@@ -20,6 +20,7 @@ from coursework.parsing.reading import Reading
 if TYPE_CHECKING:
     from coursework.course.variant import Variant
 
+_ROUNDED = 0.005  #: of a value: what rounding to three digits may change
 _FEW_JUDGED = 6  #: wrong numbers that judges judge, of which more are not tried in pairs
 
 
@@ -141,11 +142,23 @@ class _Boxes:
         return all(shown) and len(set(shown)) <= 1 and all(self._is_explained(p) for p in pair if not p.judge)
 
     def _mistake(self, part: Part, pair: Sequence[Part]) -> str:
-        """Return the mistake that a judge names of an answer, and of none beyond the pair."""
+        """Return the mistake that a judge names of an answer, and of none beyond the pair unless it gives just this answer."""
         said = {i: v.said for i, v in self._verdicts.items() if v.said}
         named = said[part.id].mistake if part.id in said else ""
+        if self._gives(named, part):
+            return named
         others = {*dict(judges_of(self._variant))[part.judge]}.difference(p.id for p in pair)
         return "" if any(said[i].mistake == named for i in others if i in said) else named
+
+    def _gives(self, mistake: str, part: Part) -> bool:
+        """Return whether a mistake, itself no exchange, gives an answer to a judge as closely as people round."""
+        key = self._variant.key
+        if not mistake or key.solution.mistakes[mistake].kind == "exchanged":
+            return False
+        wrong = key.wrong[mistake].get(part.quantity)
+        return isinstance(wrong, float | int) and any(
+            abs(value - wrong) <= _ROUNDED * abs(wrong) for value in self._readings[part.id].values
+        )
 
     def _is_explained(self, part: Part) -> bool:
         """Return whether the opposite sign or a known mistake gives the answer in its own box as closely."""

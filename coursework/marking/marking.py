@@ -29,7 +29,7 @@ from coursework.marking.error_messages import mark_wrong, shown_as
 from coursework.marking.exchanged import Exchange, exchanged
 from coursework.marking.feedback import Sentence, echo, part_name, questions, say, say_not_read
 from coursework.marking.joint_marking import is_told_with, mark_judged, waits_for
-from coursework.marking.judges import best_judged, is_scale, judged, judged_again, judges_of
+from coursework.marking.judges import Verdict, best_judged, is_scale, judged, judged_again, judges_of
 from coursework.marking.loop_judge import loop_verdicts
 from coursework.marking.mark import Mark, SheetMarks, made_mark
 from coursework.model import Part
@@ -110,7 +110,8 @@ def mark(variant: Variant, answers: Mapping[str, Any], known: Mapping[str, str] 
         if i in elsewhere and elsewhere[i].part.id not in marks and _follows(key, part, reading, before):
             del elsewhere[elsewhere[i].part.id], elsewhere[i]
         if i in elsewhere:
-            marks[i] = _mark_exchanged(variant, key, part, elsewhere[i], marks)
+            named = _named_exchange(key, drawn.get(i))
+            marks[i] = _mark_exchanged(variant, key, part, elsewhere[i], named, marks)
             before.take_right(elsewhere[i].part, elsewhere[i].reading, elsewhere[i].place)
             continue
         if i in together:
@@ -214,10 +215,17 @@ def _follows(key: Key, part: Part, reading: Reading, before: EarlierAnswers) -> 
     )
 
 
+def _named_exchange(key: Key, verdict: Verdict | None) -> str:
+    """Return the mistake that a judge names of an answer, where that is an exchange itself; else ""."""
+    name = verdict.said.mistake if verdict and verdict.said else ""
+    return name if name and key.solution.mistakes[name].kind == "exchanged" else ""
+
+
 def _mark_exchanged(
-    variant: Variant, key: Key, part: Part, exchange: Exchange, marks: Mapping[str, Mark]
+    variant: Variant, key: Key, part: Part, exchange: Exchange, named: str, marks: Mapping[str, Mark]
 ) -> Mark:
-    """Return the mark of an answer that stands in the box of another: the exchange is paid for where it is first met."""
+    """Return the mark of an answer that stands in the box of another: the exchange is paid for where it is first met, and there
+    told in the words of the mistake that is ``named``, if any."""
     other, reading = exchange.part, exchange.reading
     read_as, read = shown_as(variant, other, reading, exchange.place)
     mark_of = partial(made_mark, variant, part, reading)
@@ -226,12 +234,15 @@ def _mark_exchanged(
         "other": part_name(variant, other),
         "where": questions(variant, [other.id], "and"),
     }
-    matches = ("slip:exchanged",)
+    matches = ("slip:exchanged", f"mistake:{named}") if named else ("slip:exchanged",)
     if other.id in marks:
         message = say(variant, part, "exchanged_again", **pieces)
         return mark_of("follow_through", key.rules.follow_through, read_as, message, matches)
     share = key.rules.share("exchanged")
-    return mark_of("slip:exchanged", share, read_as, say(variant, part, "slip_exchanged", **pieces), matches)
+    mark = mark_of("slip:exchanged", share, read_as, say(variant, part, "slip_exchanged", **pieces), matches)
+    return (
+        mark.saying(*Sentence("{says}", {"says": variant.told(named)}).texts(variant.lang)) if named else mark
+    )
 
 
 def _mark_part(

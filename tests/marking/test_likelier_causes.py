@@ -180,6 +180,21 @@ def test_an_exchange_is_found_whatever_units_are_written():
     assert "exchanged" in marking["omega4"].feedback
 
 
+def test_an_exchange_that_a_judge_names_is_counted_once_and_told_in_its_words():
+    variant = COURSE["function_generation"].variant(0, lang="en")
+    right = {i: significant(float(variant.key.reference[i]), 5) for i in ("r2", "r3", "r4")}
+    marking = variant.grade({**right, "r2": right["r4"], "r4": right["r2"]})
+    assert [marking[i].verdict for i in right] == ["slip:exchanged", "correct", "follow_through"]
+    assert "which ratio belongs to which angle?" in marking["r2"].feedback
+    by_chance = COURSE["function_generation"].variant(
+        18, lang="en"
+    )  # other answers that are near an exchange
+    key, name = by_chance.key, "ratios_upside_down"
+    answers = {"r2": key.wrong[name]["r2"], "r3": key.reference["r3"], "r4": key.wrong[name]["r4"]}
+    marking = by_chance.grade({i: significant(float(value), 6) for i, value in answers.items()})
+    assert marking["r2"].mistakes == (name,)
+
+
 def test_wrong_counts_are_no_exchange_where_others_are_wrong():
     (variant,) = distinct_variants(COURSE["planar_chain"], 0, 1, "en")
     right = {p.id: int(variant.key.reference[p.quantity]) for p in variant.parts if p.kind == "integer"}
