@@ -1,11 +1,11 @@
-"""What the dearest requests cost that one person can send: answers made to be slow to read, and bodies made to fill memory; and
-what becomes of assignments that nobody writes.
+"""What the dearest requests cost that one person can send: answers made to be slow to read, and bodies made
+to fill memory; and what becomes of assignments that nobody writes.
 
-python benchmarks/attacks.py                # all
-python benchmarks/attacks.py answers        # milliseconds of a processor, by kind of question, at lengths that double
-python benchmarks/attacks.py assignments    # files of assignments: how many are told in a line, how many are taken
-python benchmarks/attacks.py bodies         # a site of its own on the loopback interface: status, milliseconds, memory
-python benchmarks/attacks.py uploads        # ten files of one student at once, and how long another student waits meanwhile
+python benchmarks/attacks.py                # all python benchmarks/attacks.py answers        # milliseconds
+of a processor, by kind of question, at lengths that double python benchmarks/attacks.py assignments    #
+files of assignments: how many are told in a line, how many are taken python benchmarks/attacks.py bodies
+# a site of its own on the loopback interface: status, milliseconds, memory python benchmarks/attacks.py
+uploads        # ten files of one student at once, and how long another student waits meanwhile
 """
 
 from __future__ import annotations
@@ -33,18 +33,62 @@ from coursework.errors import BadInput
 from coursework.issuing.assignment import OPTIONS, assignment_of, table_of
 
 LENGTHS = (500, 1000, 2000, 4000, 40_000)
-#: Written over and over: spaces and separators that patterns try in many ways, brackets, operators, units, letters.
+#: Written over and over: spaces and separators that patterns try in many ways, brackets, operators, units,
+#: letters.
 PIECES = (
-    " ", "\n", "\t", "\\\\", "1", "1 ", "1,", "1\n", "1:", "1;2", "(", "()", "[", "{", "(1)", "(A,B)", "^", "'", '"', "-", "+", "*", "/", "=",
-    "=-", "a=", "e", "1e9", "m", "m^", "m*", "mm ", "sqrt(", "cos ", "\\frac{", "\\dot{", "$", "_", "&amp;", "|", "A, ", "x ", "1-2 P;", "joint ",
-)  # fmt: skip
+    " ",
+    "\n",
+    "\t",
+    "\\\\",
+    "1",
+    "1 ",
+    "1,",
+    "1\n",
+    "1:",
+    "1;2",
+    "(",
+    "()",
+    "[",
+    "{",
+    "(1)",
+    "(A,B)",
+    "^",
+    "'",
+    '"',
+    "-",
+    "+",
+    "*",
+    "/",
+    "=",
+    "=-",
+    "a=",
+    "e",
+    "1e9",
+    "m",
+    "m^",
+    "m*",
+    "mm ",
+    "sqrt(",
+    "cos ",
+    "\\frac{",
+    "\\dot{",
+    "$",
+    "_",
+    "&amp;",
+    "|",
+    "A, ",
+    "x ",
+    "1-2 P;",
+    "joint ",
+)
 WAYS = ("{0}", "1{0}x", "({0}", "1 {0}!")
 COMMAND = "import sys; from coursework.cli import run; sys.exit(run(sys.argv[1:]))"
 MEGABYTE = 1024 * 1024
 
 
 def answers() -> None:
-    """The dearest answer of each kind, by length; one that were tried in all ways would grow eight times a row."""
+    """The dearest answer of each kind, by length; one that were tried in all ways would grow eight times a
+    row."""
     rows = []
     kinds = _kinds()
     for kind, (variant, part) in kinds.items():
@@ -96,10 +140,38 @@ _OWN = (
 _KEYS = (*_OWN, "answers", "solutions_after", "marking", "exercises", *OPTIONS, "nothing")
 _IN_AN_EXERCISE = ("name", "parts", "points", "seed", "nothing")
 _VALUES = (
-    "true", "0", "-1", "1.5", "nan", "inf", "1e400", "9" * 19, "9" * 5000, "0x" + "f" * 5000, '""', '"x"', '"' + "x" * 100_000 + '"', '"\\u0000"',
-    '"../../x"', '"<script>"', '"{0.__class__}"', "2026-11-23", "9999-12-31T23:59:60", "[]", "[[[]]]", "[" * 3000, '["a", 1]', "{}", '{en = 1}',
-    '{zz = "x"}', "{a.b.c = 1}", "{of = 0, step = 0}", "{of = 20, step = -1}", '[""]', '["' + '","'.join("ab" * 500) + '"]',
-)  # fmt: skip
+    "true",
+    "0",
+    "-1",
+    "1.5",
+    "nan",
+    "inf",
+    "1e400",
+    "9" * 19,
+    "9" * 5000,
+    "0x" + "f" * 5000,
+    '""',
+    '"x"',
+    '"' + "x" * 100_000 + '"',
+    '"\\u0000"',
+    '"../../x"',
+    '"<script>"',
+    '"{0.__class__}"',
+    "2026-11-23",
+    "9999-12-31T23:59:60",
+    "[]",
+    "[[[]]]",
+    "[" * 3000,
+    '["a", 1]',
+    "{}",
+    "{en = 1}",
+    '{zz = "x"}',
+    "{a.b.c = 1}",
+    "{of = 0, step = 0}",
+    "{of = 20, step = -1}",
+    '[""]',
+    '["' + '","'.join("ab" * 500) + '"]',
+)
 _WHOLE = (
     "[",
     "]",
@@ -117,7 +189,8 @@ _WHOLE = (
 
 
 def assignments() -> None:
-    """Every value in every place of an assignment's file; what is neither taken nor told in a line at once is listed."""
+    """Every value in every place of an assignment's file; what is neither taken nor told in a line at once is
+    listed."""
     course, found = open_course(), dict.fromkeys(("told in a line", "taken", "neither"), 0)
     for source in _assignments():
         found[_became(source, course)] += 1
@@ -222,20 +295,24 @@ _AT_ONCE = 10
 
 
 def uploads() -> None:
-    """Ten files of one student at once: what becomes of them, what they cost, how long another student waits for a page."""
+    """Ten files of one student at once: what becomes of them, what they cost, how long another student waits
+    for a page."""
     header = b"student,exercise,seed,part,answer\n"
     row, own = b"Ada,grashof,1,part,12\n", []
     files = {
         "a table of 8 MB": ("a.csv", header + row * (8 * MEGABYTE // len(row))),
         "a table of 255 kB": ("a.csv", header + row * 700 + b"\n" * 240_000),
         "JSON in brackets, 255 kB": ("a.json", b"[" * 255 * 1024),
-        "a notebook of 2 MB": ("a.ipynb", b'{"cells": [' + b'{"cell_type": "code", "source": ["answers = {"]},' * 42_000),
+        "a notebook of 2 MB": (
+            "a.ipynb",
+            b'{"cells": [' + b'{"cell_type": "code", "source": ["answers = {"]},' * 42_000,
+        ),
         "a cell of 250 kB": ("a.csv", header + b"Ada,grashof,1,part," + b"(1+" * 83_000),
         "a row of 250 000 cells": ("a.csv", header + b"," * 250_000),
         "a notebook in brackets, 2 MB": ("a.ipynb", b'{"cells": ' + b"[" * 2_000_000),
         "a bomb of 1 GB as a notebook": ("a.ipynb", _bomb(1024 * MEGABYTE)),
         "a bomb of 200 MB as a table": ("a.csv", _bomb(200 * MEGABYTE)),
-    }  # fmt: skip
+    }
     student = r'value="(\d+)">[^<]*<span[^>]*>(?:student|étudiant)'
     with (
         _demonstration() as (pid, url),
@@ -277,9 +354,14 @@ def _bomb(size: int) -> bytes:
 
 def _trickled(pid: int, one, other, address: str, url: str) -> tuple[str, ...]:
     """Begin a hundred bodies that send a byte a second, for 10 s; then the lines are closed."""
-    head = [f"POST {address} HTTP/1.1", f"Host: {url.removeprefix('http://')}", f"X-Seal: {_seal(one)}",
-            "Content-Type: multipart/form-data; boundary=x", "Content-Length: 200000",
-            "Cookie: " + "; ".join(f"{name}={value}" for name, value in one.cookies.items())]  # fmt: skip
+    head = [
+        f"POST {address} HTTP/1.1",
+        f"Host: {url.removeprefix('http://')}",
+        f"X-Seal: {_seal(one)}",
+        "Content-Type: multipart/form-data; boundary=x",
+        "Content-Length: 200000",
+        "Cookie: " + "; ".join(f"{name}={value}" for name, value in one.cookies.items()),
+    ]
     before, begun, longest = _memory(pid, "VmRSS"), time.perf_counter(), 0.0
     lines = [socket.create_connection(("127.0.0.1", int(url.rpartition(":")[2]))) for _ in range(100)]
     for line in lines:
@@ -305,10 +387,14 @@ def _seal(client) -> str:
 def _sent(client, port: int, pid: int, body: _Body) -> tuple[str, ...]:
     length = 200 if body.is_in_pieces else len(body.data)
     head = [
-        "POST /desk/1/answers HTTP/1.1", f"Host: 127.0.0.1:{port}", "Connection: close", f"Content-Type: {body.kind}",
-        f"Content-Length: {length}", f"X-Seal: {_seal(client)}",
+        "POST /desk/1/answers HTTP/1.1",
+        f"Host: 127.0.0.1:{port}",
+        "Connection: close",
+        f"Content-Type: {body.kind}",
+        f"Content-Length: {length}",
+        f"X-Seal: {_seal(client)}",
         "Cookie: " + "; ".join(f"{name}={value}" for name, value in client.cookies.items()),
-    ]  # fmt: skip
+    ]
     data = b"%x\r\n%s\r\n0\r\n\r\n" % (len(body.data), body.data) if body.is_in_pieces else body.data
     head += ["Transfer-Encoding: chunked"] if body.is_in_pieces else []
     before, spent, begun = _memory(pid, "VmRSS"), _processor(pid), time.perf_counter()

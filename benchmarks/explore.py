@@ -2,7 +2,8 @@
 
 python benchmarks/explore.py
 
-Processor time of all that is computed and drawn for new numbers: 360 steps of a turn, figure, paths and plots.
+Processor time of all that is computed and drawn for new numbers: 360 steps of a turn, figure, paths and
+plots.
 """
 
 from __future__ import annotations

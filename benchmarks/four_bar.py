@@ -43,7 +43,8 @@ def ours(angles: np.ndarray) -> dict:
 
 
 def least_calls(angles: np.ndarray) -> dict:
-    """What positions cannot do without, alone: a tangent and two arctangents, numpy's and by our formula, in pieces."""
+    """What positions cannot do without, alone: a tangent and two arctangents, numpy's and by our formula, in
+    pieces."""
     eighth = np.radians(angles) / 4
     slope = np.tan(eighth)
     room = np.empty_like(slope)
@@ -97,7 +98,8 @@ def tried(angles: np.ndarray) -> dict:
 
 
 def beside(first: Rounds, own: Rounds) -> tuple[str, ...]:
-    """Least and median nanoseconds; times the first call's: least by least, median over rounds, by processor time."""
+    """Least and median nanoseconds; times the first call's: least by least, median over rounds, by processor
+    time."""
     ns = own.clock / COUNT * 1e9
     return (
         f"{ns.min():.1f}",

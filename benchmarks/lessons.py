@@ -2,8 +2,8 @@
 
     python benchmarks/lessons.py      five minutes
 
-It prints a Markdown table, which stands in docs/site.md: the whole lesson as one page, what comes at each visit, and what a browser
-keeps after the first (steps and figures).
+It prints a Markdown table, which stands in docs/site.md: the whole lesson as one page, what comes at each
+visit, and what a browser keeps after the first (steps and figures).
 """
 
 from __future__ import annotations
@@ -30,7 +30,8 @@ def kilobytes(*contents: bytes) -> float:
 
 
 def weighed(class_: Class, name: str, lang: str) -> list[str]:
-    """Return the kilobytes of a lesson: as one page, its page, the first part of its steps, all its steps, its figures."""
+    """Return the kilobytes of a lesson: as one page, its page, the first part of its steps, all its steps,
+    its figures."""
     browser = class_.browser(ZOE, lang)
     whole, page = browser.get(f"/lessons/{name}?whole"), browser.get(f"/lessons/{name}")
     parts = [browser.get(part).content for part in re.search(r' data-steps="([^"]+)"', page.text)[1].split()]

@@ -2,11 +2,12 @@
 
 python benchmarks/marking.py [CLASS] [ANSWERS] [FOLDER]
 
-Classes: ``plain`` and ``mixed`` of a million answers to five exercises in 300 variants each, ``course`` of 200 000 answers to
-every exercise of the course in 100 variants each; all three unless one is named. Plain: digits alone, all right. Mixed: a third
-is not right. Course: a tenth is wrong, a twentieth is blank or nonsense. A quarter each of the wrong ones shows a usual error, a
-slip of sign or unit, follows from such an answer or is nothing that one could name; right ones carry units, commas and powers of ten.
-Feedback sheets are not made. Printed: seconds by the clock, seconds of all processors, and the most memory of one process.
+Classes: ``plain`` and ``mixed`` of a million answers to five exercises in 300 variants each, ``course`` of
+200 000 answers to every exercise of the course in 100 variants each; all three unless one is named. Plain:
+digits alone, all right. Mixed: a third is not right. Course: a tenth is wrong, a twentieth is blank or
+nonsense. A quarter each of the wrong ones shows a usual error, a slip of sign or unit, follows from such an
+answer or is nothing that one could name; right ones carry units, commas and powers of ten. Feedback sheets
+are not made. Printed: seconds by the clock, seconds of all processors, and the most memory of one process.
 """
 
 from __future__ import annotations
@@ -72,7 +73,8 @@ def wrong(variant, part, rng):
 
 
 def sheet(variant, rng, mix):
-    """Return the answers of one student, by part: numbers alone, of which cases and equations are left as they are."""
+    """Return the answers of one student, by part: numbers alone, of which cases and equations are left as
+    they are."""
     answers = {}
     for part in variant.parts:
         value = variant.key.reference.get(part.quantity, "")

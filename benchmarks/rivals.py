@@ -1,7 +1,8 @@
 """The motion in time of a mechanism by general multibody codes, and by a quadrature of many digits.
 
-The rivals are handed the numbers that the package itself has read from a scene (bodies, centres, masses, pins, slides,
-where everything stands and how fast it moves at the start); the quadrature has formulas of its own.
+The rivals are handed the numbers that the package itself has read from a scene (bodies, centres, masses,
+pins, slides, where everything stands and how fast it moves at the start); the quadrature has formulas of its
+own.
 """
 
 from __future__ import annotations
@@ -228,8 +229,8 @@ class Kane:
 
 
 class Quadrature:
-    """The motion from its first integral, by many digits: the kinetic energy is what torque and weights have worked, so
-    the speed is known at every angle, and the time to an angle is an integral.
+    """The motion from its first integral, by many digits: the kinetic energy is what torque and weights have
+    worked, so the speed is known at every angle, and the time to an angle is an integral.
 
     ``shape``: ``"four_bar"`` or ``"slider_crank"``, with its lengths in mm.
     """

@@ -1,11 +1,13 @@
-"""Whole commands by the number of students: seconds, processor seconds, memory, disk, and how fast the cost grows.
+"""Whole commands by the number of students: seconds, processor seconds, memory, disk, and how fast the cost
+grows.
 
 python benchmarks/scale.py [JOB,…] [STUDENTS,…] [FOLDER]
 
-Each job is a function of the number of students and a folder; JOBS names them. Three exercises; a command is started anew for
-each measurement. Memory is that of the largest process, and of all processes of the command at one moment. The exponent is the
-slope of the processor seconds from one number of students to the next, on logarithmic scales: 1 is proportional, 2 quadratic.
-The pages of the site are measured by ``scale_site.py``, a class that comes at one moment by ``site_rush.py``.
+Each job is a function of the number of students and a folder; JOBS names them. Three exercises; a command is
+started anew for each measurement. Memory is that of the largest process, and of all processes of the command
+at one moment. The exponent is the slope of the processor seconds from one number of students to the next, on
+logarithmic scales: 1 is proportional, 2 quadratic. The pages of the site are measured by ``scale_site.py``, a
+class that comes at one moment by ``site_rush.py``.
 """
 
 from __future__ import annotations
@@ -113,7 +115,8 @@ def booklet(students: int, folder: Path) -> Cost:
 
 
 def feedback(formats: str, students: int, folder: Path) -> Cost:
-    """Return the cost of marking a sheet of each student, with feedback in these formats; none marks alone."""
+    """Return the cost of marking a sheet of each student, with feedback in these formats; none marks
+    alone."""
     write_answers(folder, Mix(_ANSWERS * students, EXERCISES, students, 0.05, 0.3))
     form = ("--formats", formats) if formats else ("--no-feedback",)
     files = (str(folder / "answers.csv"), "--issued", str(folder / "issued.json"))

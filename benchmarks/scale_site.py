@@ -1,10 +1,12 @@
-"""Pages of the desk and of a student, by the number of students and assignments: processor seconds, memory, statements.
+"""Pages of the desk and of a student, by the number of students and assignments: processor seconds, memory,
+statements.
 
-    python benchmarks/scale_site.py [STUDENTS] [ASSIGNMENTS] [--db FILE]      5000 students, 20 assignments: five minutes
+    python benchmarks/scale_site.py [STUDENTS] [ASSIGNMENTS] [--db FILE]      5000 students, 20 assignments:
+    five minutes
 
-Each page is asked for twice by a process of its own, since what a process has read it keeps; nothing but the page is timed. A class is
-dealt, handed in on the site and marked once, with half of the answers right; the other assignments are copies of it. ``--db`` keeps
-the database, and takes it if it is there.
+Each page is asked for twice by a process of its own, since what a process has read it keeps; nothing but the
+page is timed. A class is dealt, handed in on the site and marked once, with half of the answers right; the
+other assignments are copies of it. ``--db`` keeps the database, and takes it if it is there.
 """
 
 from __future__ import annotations
@@ -120,7 +122,8 @@ def put_class(store: Store, students: int, assignments: int) -> None:
 
 
 def _copy(connection: Any, number: int, copy: int, many: Mapping[str, int]) -> None:
-    """Copy the first assignment with all its rows, of which a table has so many; ids go up by multiples of them."""
+    """Copy the first assignment with all its rows, of which a table has so many; ids go up by multiples of
+    them."""
     row = connection.execute(select(tables.assignment).where(tables.assignment.c.id == number)).one()
     values = {**row._mapping, "id": number + copy, "name": f"week {copy + 1}"}
     connection.execute(insert(tables.assignment).values(values))
@@ -169,7 +172,8 @@ async def _asked(app: Any, cookie: str, address: str, counted: list[str]) -> Mea
 
 
 def _memory(name: str, *, reset: bool = False) -> float:
-    """Return a figure of this process in MB; start its peak anew if ``reset``. Not a number where the system tells none."""
+    """Return a figure of this process in MB; start its peak anew if ``reset``. Not a number where the system
+    tells none."""
     if reset:
         with suppress(OSError):
             Path("/proc/self/clear_refs").write_text("5")

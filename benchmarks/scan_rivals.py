@@ -1,14 +1,17 @@
-"""The same crosses on sheets of this package, of Auto Multiple Choice and of R/exams (NOPS), scanned alike and read by each.
+"""The same crosses on sheets of this package, of Auto Multiple Choice and of R/exams (NOPS), scanned alike
+and read by each.
 
     python benchmarks/scan_rivals.py FOLDER [--pages 24] [--root ROOT]
 
-Every page has 14 questions of five boxes. Which are crossed, by which pen and how shakily, and how the page is scanned
-depends on the page and on the kind of disturbance alone, so that all three see the same. Needs the programs
-``auto-multiple-choice`` (1.6) and ``pdflatex``, and ``Rscript`` with the packages exams (2.4) and png: on this machine, or
-in a system of their own under ROOT, entered by chroot; then FOLDER lies in ROOT. What is not there is left out and said.
+Every page has 14 questions of five boxes. Which are crossed, by which pen and how shakily, and how the page
+is scanned depends on the page and on the kind of disturbance alone, so that all three see the same. Needs the
+programs ``auto-multiple-choice`` (1.6) and ``pdflatex``, and ``Rscript`` with the packages exams (2.4) and
+png: on this machine, or in a system of their own under ROOT, entered by chroot; then FOLDER lies in ROOT.
+What is not there is left out and said.
 
-Auto Multiple Choice takes a box as ticked above a darkness that its users choose: 0.15 here, for crosses (its default 0.5 is
-for boxes filled wholly). NOPS has its defaults. Neither tells of a box that it is unsure; both may fail at a page.
+Auto Multiple Choice takes a box as ticked above a darkness that its users choose: 0.15 here, for crosses (its
+default 0.5 is for boxes filled wholly). NOPS has its defaults. Neither tells of a box that it is unsure; both
+may fail at a page.
 """
 
 from __future__ import annotations
@@ -37,7 +40,8 @@ from coursework.sheets.answer_pages import AnswerField, AnswerPage, Box
 QUESTIONS, CASES = 14, "ABCDE"
 DARK = 0.15
 
-#: What a reader says of a page: of each question, of each box, whether it is ticked; None where it is told unsure.
+#: What a reader says of a page: of each question, of each box, whether it is ticked; None where it is told
+#: unsure.
 Said = list[list[bool | None]]
 Command = Callable[[Path, list[str]], str]
 
@@ -111,16 +115,34 @@ def _page(page: int) -> AnswerPage:
     code = "".join("ABCDEFGHIJKLMNOPQRSTUVWXYZ234567"[(page >> 5 * k) % 32] for k in range(13))
     fields = tuple(
         AnswerField(
-            0, "rivals", 1, f"q{k}", 0, 1, "ticks", whole=Box(28, 46 + 14.0 * k, 90, 8), several=True,
+            0,
+            "rivals",
+            1,
+            f"q{k}",
+            0,
+            1,
+            "ticks",
+            whole=Box(28, 46 + 14.0 * k, 90, 8),
+            several=True,
             ticks=tuple((case, Box(42 + 12.0 * c, 47 + 14.0 * k, 5, 5)) for c, case in enumerate(CASES)),
         )
         for k in range(QUESTIONS)
-    )  # fmt: skip
+    )
     marks = ((11.0, 11.0), (199.0, 11.0), (199.0, 286.0), (11.0, 286.0))
     return AnswerPage(
-        1, 1, f"CW1 {code} 1/1", 210.0, 297.0, marks, Box(172.5, 8, 20, 20), fields,
-        title=Box(20, 8, 100, 8), name=Box(20, 17, 100, 8), rules=None, guide=(),
-    )  # fmt: skip
+        1,
+        1,
+        f"CW1 {code} 1/1",
+        210.0,
+        297.0,
+        marks,
+        Box(172.5, 8, 20, 20),
+        fields,
+        title=Box(20, 8, 100, 8),
+        name=Box(20, 17, 100, 8),
+        rules=None,
+        guide=(),
+    )
 
 
 # ------------------------------------------------------------------- Auto Multiple Choice
@@ -146,8 +168,10 @@ class AutoMultipleChoice:
             (folder / inside).mkdir(parents=True)
         questions = "".join(rf"\one{{{k}}}" for k in range(1, QUESTIONS + 1))
         (folder / "sheet.tex").write_text(AMC.replace("PAGES", str(pages)).replace("QUESTIONS", questions))
-        self._run("prepare --mode s --prefix ./ --data data sheet.tex --out-sujet sheet.pdf --out-calage sheet.xy "
-                  "--out-corrige solution.pdf --with pdflatex")  # fmt: skip
+        self._run(
+            "prepare --mode s --prefix ./ --data data sheet.tex --out-sujet sheet.pdf --out-calage sheet.xy "
+            "--out-corrige solution.pdf --with pdflatex"
+        )
         self._run("meptex --src sheet.xy --data data")
         self.pdf = (folder / "sheet.pdf").read_bytes()
         self.boxes = {page: self._boxes(page + 1) for page in range(pages)}
@@ -158,7 +182,8 @@ class AutoMultipleChoice:
     def _boxes(self, copy: int) -> list[list[Box]]:
         with sqlite3.connect(self.folder / "data" / "layout.sqlite") as layout:
             rows = layout.execute(
-                "select xmin, ymin, xmax, ymax from layout_box where student = ? and page = 1 order by question, answer",
+                "select xmin, ymin, xmax, ymax from layout_box where student = ? and page = 1 order by "
+                "question, answer",
                 (copy,),
             ).fetchall()
         mm = np.array(rows) * 25.4 / 300
@@ -177,7 +202,8 @@ class AutoMultipleChoice:
         self._run("analyse --projet . --data data --cr cr --liste-fichiers list")
         with sqlite3.connect(self.folder / "data" / "capture.sqlite") as capture:
             zones = capture.execute(
-                "select student, id_a, id_b, 1.0 * black / total from capture_zone where type = 4 order by 1, 2, 3"
+                "select student, id_a, id_b, 1.0 * black / total from capture_zone where type = 4 "
+                "order by 1, 2, 3"
             ).fetchall()
         said: dict[int, Said] = {}
         for student, question, answer, black in zones:
@@ -213,8 +239,11 @@ class Nops:
         shutil.rmtree(folder, ignore_errors=True)
         (folder / "scans").mkdir(parents=True)
         (folder / "q.Rnw").write_text(CHOOSE)
-        self._r(f"set.seed(1); exams::exams2nops(rep(list('q.Rnw'), {QUESTIONS}), n = {pages}, dir = 'out', name = 'sheet', "
-                "date = '2026-01-15', blank = 0, duplex = FALSE)")  # fmt: skip
+        self._r(
+            f"set.seed(1); exams::exams2nops(rep(list('q.Rnw'), {QUESTIONS}), n = {pages}, dir = "
+            "'out', name = 'sheet', "
+            "date = '2026-01-15', blank = 0, duplex = FALSE)"
+        )
         self.pdfs = [path.read_bytes() for path in sorted((folder / "out").glob("sheet*.pdf"))]
 
     def _r(self, code: str) -> str:

@@ -1,14 +1,16 @@
-"""Answer pages filled in by hand, printed and scanned in simulation, and read: what is right, wrong, and left to a person.
+"""Answer pages filled in by hand, printed and scanned in simulation, and read: what is right, wrong, and left
+to a person.
 
-python benchmarks/scans.py FOLDER [PAGES] [KIND]   # 10 000 unless told, of one kind of scan or of all; goes on where it stopped
-python benchmarks/scans.py FOLDER table            # of what was read so far
-python benchmarks/scans.py FOLDER doubted          # of numbers that are doubted: what is taken if they are right answers
-python benchmarks/scans.py FOLDER wrong            # what was read wrong
+python benchmarks/scans.py FOLDER [PAGES] [KIND]   # 10 000 unless told, of one kind of scan or of all; goes
+on where it stopped python benchmarks/scans.py FOLDER table            # of what was read so far python
+benchmarks/scans.py FOLDER doubted          # of numbers that are doubted: what is taken if they are right
+answers python benchmarks/scans.py FOLDER wrong            # what was read wrong
 
-Two thirds of the numbers are right answers of a variant, rounded; of the wrong ones most are near a right one: a digit
-changed or exchanged, another sign, a point elsewhere, a few per cent too many. FOLDER keeps the printed sheets and a line a page, ``read.jsonl``. The handwriting is MNIST's test set (the bank of the
-tests, which trained nothing) and, every fifth page, scikit-learn's digits, of other writers, 8 by 8 pixels and so blurred
-(``pip install scikit-learn``; without it every page is of the first bank).
+Two thirds of the numbers are right answers of a variant, rounded; of the wrong ones most are near a right
+one: a digit changed or exchanged, another sign, a point elsewhere, a few per cent too many. FOLDER keeps the
+printed sheets and a line a page, ``read.jsonl``. The handwriting is MNIST's test set (the bank of the tests,
+which trained nothing) and, every fifth page, scikit-learn's digits, of other writers, 8 by 8 pixels and so
+blurred (``pip install scikit-learn``; without it every page is of the first bank).
 """
 
 from __future__ import annotations
@@ -42,9 +44,15 @@ from coursework.sheets.answer_pages import AnswerField, AnswerPage, answer_pages
 
 #: Exercises whose answer pages are filled in: numbers, choices, several choices, vectors, words, drawings.
 EXERCISES = (
-    "two_circles", "joint_twist", "slider_extras", "four_bar_positions", "vocabulary", "ball_reducer", "slotted_mechanism",
+    "two_circles",
+    "joint_twist",
+    "slider_extras",
+    "four_bar_positions",
+    "vocabulary",
+    "ball_reducer",
+    "slotted_mechanism",
     "crank_shaper_drawn",
-)  # fmt: skip
+)
 SIZES = ("a4", "letter")
 
 
@@ -230,7 +238,8 @@ def table(folder: Path) -> None:
     for row in rows:
         by[row["kind"]].append(row)
     print(
-        "| scanned as | pages | not found | answers | read right | read wrong | to a person, as they must | to a person besides | s a page |"
+        "| scanned as | pages | not found | answers | read right | read wrong | to a person, as they "
+        "must | to a person besides | s a page |"
     )
     print("|---|--:|--:|--:|--:|--:|--:|--:|--:|")
     for name, those in [*by.items(), ("all", rows)]:
@@ -242,7 +251,8 @@ def table(folder: Path) -> None:
         shares = [f"{total[k] / max(asked, 1):.1%}" for k in ("must wait", "waits")]
         seconds = float(np.median([row["seconds"] for row in those]))
         print(
-            f"| {name} | {len(those):,} | {lost} | {asked:,} | {total['right']:,} | {total['wrong']} | {' | '.join(shares)} | {seconds:.2f} |"
+            f"| {name} | {len(those):,} | {lost} | {asked:,} | {total['right']:,} | {total['wrong']} | "
+            f"{' | '.join(shares)} | {seconds:.2f} |"
         )
     why: Counter[str] = Counter()
     for row in rows:
@@ -257,7 +267,8 @@ def doubted(folder: Path) -> None:
         by[row["kind"]].append(row)
         by["all"].append(row)
     print(
-        "| scanned as | pages | places | doubted | least probability | taken | of the right ones | taken though something else was wrong | a person besides |"
+        "| scanned as | pages | places | doubted | least probability | taken | of the right ones | "
+        "taken though something else was wrong | a person besides |"
     )
     print("|---|--:|--:|--:|--:|--:|--:|--:|--:|")
     for kind, rows in by.items():
@@ -272,7 +283,8 @@ def doubted(folder: Path) -> None:
             share = sum(case[2] for case in taken) / max(sum(case[2] for case in cases), 1)
             left = (total["waits"] - len(taken)) / max(asked, 1)
             print(
-                f"| {kind} | {len(rows)} | {asked} | {len(cases)} | {least} | {len(taken)} | {share:.0%} | {false} | {left:.1%} |"
+                f"| {kind} | {len(rows)} | {asked} | {len(cases)} | {least} | {len(taken)} | "
+                f"{share:.0%} | {false} | {left:.1%} |"
             )
 
 

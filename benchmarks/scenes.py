@@ -1,4 +1,5 @@
-"""Scenes: what each effect costs, what forces cost beside the linear solve, and what a motion in time costs beside rivals.
+"""Scenes: what each effect costs, what forces cost beside the linear solve, and what a motion in time costs
+beside rivals.
 
 python benchmarks/scenes.py [effects] [forces] [motion]
 
@@ -48,7 +49,8 @@ WITH_REACTIONS = ("+ reactions", "+ friction")
 
 
 def added_to(mechanism: Mechanism) -> SceneData:
-    """A mass and an inertia for every body, a load on the last one, friction in slides, or in pins where there are none."""
+    """A mass and an inertia for every body, a load on the last one, friction in slides, or in pins where
+    there are none."""
     last = mechanism.bodies[-1]
     load = (
         Load(last.at, force=500.0, against=True)
@@ -73,7 +75,8 @@ def driven_mechanisms() -> Iterator[tuple[Any, Mechanism]]:
 
 def effects() -> None:
     print(
-        f"### Effect by effect\n\nA turn in {STEPS:,} steps; time of the processor, {ROUNDS} rounds, the scenes of "
+        f"### Effect by effect\n\nA turn in {STEPS:,} steps; time of the processor, {ROUNDS} rounds, "
+        "the scenes of "
         "a row in turn.\n"
     )
     times, counts = {}, {}
@@ -137,7 +140,8 @@ def forces() -> None:
         "the scene, the effort alone": partial(effort.over_cycle, ANGLES - 1),
     }
     print(
-        f"### Forces beside the linear solve\n\n`{exercise.name}`, {len(mechanism.bodies)} bodies, {', '.join(FORCES)}, "
+        f"### Forces beside the linear solve\n\n`{exercise.name}`, {len(mechanism.bodies)} bodies, "
+        f"{', '.join(FORCES)}, "
         f"{ANGLES:,} angles; time of the processor, {ROUNDS} rounds.\n"
     )
     times = times_in_turn(called, ROUNDS, CLOCK)
@@ -217,7 +221,8 @@ MOTIONS = (
 
 def motion() -> None:
     print(
-        f"### A motion in time\n\n{DURATION:g} s from {SPEED:g} rad/s under {TORQUE:g} N m and the weights. Seconds of "
+        f"### A motion in time\n\n{DURATION:g} s from {SPEED:g} rad/s under {TORQUE:g} N m and the "
+        "weights. Seconds of "
         f"processor, {MOTION_ROUNDS} rounds, all in turn; "
         "the error is that of the driver's angle at the end, in degrees.\n"
     )

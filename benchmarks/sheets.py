@@ -25,8 +25,8 @@ BY_LATEX = 20  #: sheets that pdflatex is timed on
 
 
 def used() -> tuple[float, float, float]:
-    """Seconds of processor so far, of this process and of those that it has started; the most memory that this process
-    has held, MB, and the most that one of the others has."""
+    """Seconds of processor so far, of this process and of those that it has started; the most memory that
+    this process has held, MB, and the most that one of the others has."""
     own, others = resource.getrusage(resource.RUSAGE_SELF), resource.getrusage(resource.RUSAGE_CHILDREN)
     unit = 1 if sys.platform == "darwin" else 1024
     seconds = own.ru_utime + own.ru_stime + others.ru_utime + others.ru_stime

@@ -1,15 +1,16 @@
 """A class that works on the site at the same time: how long answers take, and whether anything is lost.
 
-    python benchmarks/site_load.py                       500 students, ten minutes, SQLite, one process
-    python benchmarks/site_load.py --short               50 students, half a minute, each four times as fast
-    python benchmarks/site_load.py --postgres --workers 2
-    python benchmarks/site_load.py --all --out FILE.md   the class, then PostgreSQL with 1, 2 and 4 processes: 12 minutes
+    python benchmarks/site_load.py                       500 students, ten minutes, SQLite, one process python
+    benchmarks/site_load.py --short               50 students, half a minute, each four times as fast python
+    benchmarks/site_load.py --postgres --workers 2 python benchmarks/site_load.py --all --out FILE.md   the
+    class, then PostgreSQL with 1, 2 and 4 processes: 12 minutes
 
-Each student opens the course and a sheet, reads, types (what is typed is sent as a draft, and what is read in it is asked
-for), checks, thinks, and goes on with the next question; half of the answers are right. Once in that time each opens the
-homework, types an answer to each of its questions, reads how they are read, hands in, and opens the receipt. Nothing is sent but
-to the loopback interface, and nothing longer than the minutes that are told. Afterwards every draft, answer and receipt that was
-acknowledged is looked for in the database. ``--postgres`` starts a server of its own in a temporary folder.
+Each student opens the course and a sheet, reads, types (what is typed is sent as a draft, and what is read in
+it is asked for), checks, thinks, and goes on with the next question; half of the answers are right. Once in
+that time each opens the homework, types an answer to each of its questions, reads how they are read, hands
+in, and opens the receipt. Nothing is sent but to the loopback interface, and nothing longer than the minutes
+that are told. Afterwards every draft, answer and receipt that was acknowledged is looked for in the database.
+``--postgres`` starts a server of its own in a temporary folder.
 """
 
 import argparse
@@ -243,7 +244,8 @@ class Student:
 
 @dataclass(frozen=True)
 class Ahead:
-    """What a site that began before the lesson has found: seeds by exercise, right answers, and what was dealt."""
+    """What a site that began before the lesson has found: seeds by exercise, right answers, and what was
+    dealt."""
 
     pools: dict[str, Pooled]
     solutions: dict[tuple[str, int], dict[str, Any]]
@@ -269,7 +271,8 @@ def dealt(students):
 
 
 def set_up(store, count):
-    """People with the cookies by which they are known, variants to practise, a homework that is published: its number."""
+    """People with the cookies by which they are known, variants to practise, a homework that is published:
+    its number."""
     course, ids, now = open_course(), [], datetime.now(UTC)
     with store.begin() as connection:
         for number in range(count):
@@ -422,9 +425,14 @@ def report(run, told, missing):
         yield f"| {what} | {len(seconds)} | {percentiles(seconds)} |"
     rate, each = len(every) / (60 * run.minutes), 1000 * told.used / len(every)
     under = sum(one < 0.2 for one in every) / len(every)
-    yield f"\n{rate:.1f} requests a second; {each:.1f} ms of processor each; {100 * under:.1f} % under 200 ms;"
+    yield (
+        f"\n{rate:.1f} requests a second; {each:.1f} ms of processor each; {100 * under:.1f} % under 200 ms;"
+    )
     yield f"mean {1000 * statistics.mean(every):.0f} ms; faults: {dict(told.faults) or 'none'}."
-    yield f"{len(told.drafts)} boxes typed in, {len(told.checks)} answers checked, {len(told.receipts)} handed in: {len(missing)} lost."
+    yield (
+        f"{len(told.drafts)} boxes typed in, {len(told.checks)} answers checked, {len(told.receipts)} "
+        f"handed in: {len(missing)} lost."
+    )
     yield from (f"  lost: {key}" for key in missing[:10])
     yield ""
 
@@ -439,8 +447,13 @@ def machine():
     load = ", ".join(f"{one:.1f}" for one in os.getloadavg()) if hasattr(os, "getloadavg") else "unknown"
     yield f"{model[1] if model else platform.machine()}, {os.cpu_count()} processors, {platform.system()}; "
     yield f"Python {platform.python_version()}, SQLite {sqlite3.sqlite_version}; load before: {load}. "
-    yield "The class runs on the same machine: httpx, one process. A commit of SQLite in the temporary folder: "
-    yield f"{commits('FULL'):.2f} ms with synchronous=FULL, which the site uses, {commits('NORMAL'):.2f} ms with NORMAL.\n"
+    yield (
+        "The class runs on the same machine: httpx, one process. A commit of SQLite in the temporary folder: "
+    )
+    yield (
+        f"{commits('FULL'):.2f} ms with synchronous=FULL, which the site uses, {commits('NORMAL'):.2f} ms "
+        "with NORMAL.\n"
+    )
 
 
 def commits(how, count=200):

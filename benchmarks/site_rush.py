@@ -1,13 +1,15 @@
-"""A class that comes at one moment: how long it waits, and whether anything is lost or refused that came in time.
+"""A class that comes at one moment: how long it waits, and whether anything is lost or refused that came in
+time.
 
     python benchmarks/site_rush.py                          SQLite with one process, then PostgreSQL with two
     python benchmarks/site_rush.py --only sqlite            or postgres
     python benchmarks/site_rush.py --students 60 --repeat 3 --out FILE.md
 
-Three hundred students open a paper within 20 seconds; two hundred open another one at one moment, open it again, save what they
-typed in a box, and hand it in at one moment 6 seconds before it closes. The others leave what they typed in the boxes. Afterwards
-the database is asked whether everything that was acknowledged is there, counts as in time, and is marked, and whether what was left
-in the boxes was handed in. Nothing is sent but to the loopback interface; a run takes some two minutes.
+Three hundred students open a paper within 20 seconds; two hundred open another one at one moment, open it
+again, save what they typed in a box, and hand it in at one moment 6 seconds before it closes. The others
+leave what they typed in the boxes. Afterwards the database is asked whether everything that was acknowledged
+is there, counts as in time, and is marked, and whether what was left in the boxes was handed in. Nothing is
+sent but to the loopback interface; a run takes some two minutes.
 """
 
 import argparse
@@ -288,7 +290,10 @@ def report(what, told, missing):
         used = told.used.get(name)
         each = "" if used is None else f"{1000 * used / len(seconds):.0f}"
         yield f"| {name} | {len(seconds)} | {' | '.join(f'{one:.2f}' for one in shown)} | {each} |"
-    yield f"\nFaults: {dict(told.faults) or 'none'}; {len(told.receipts)} receipts, {len(told.saved)} drafts: {len(missing)} lost or late;"
+    yield (
+        f"\nFaults: {dict(told.faults) or 'none'}; {len(told.receipts)} receipts, {len(told.saved)} "
+        f"drafts: {len(missing)} lost or late;"
+    )
     yield f"all marked {told.marked:.0f} s after the last receipt."
     yield from (f"  lost: {one}" for one in missing[:10])
     yield ""

@@ -2,8 +2,9 @@
 
     python benchmarks/start.py [ROUNDS]
 
-Whole processes, one after another, a round of all of them in turn; a first round is not counted, and leaves behind
-what Python compiled and what ``list`` keeps. ``list, nothing kept`` begins with an empty folder each time.
+Whole processes, one after another, a round of all of them in turn; a first round is not counted, and leaves
+behind what Python compiled and what ``list`` keeps. ``list, nothing kept`` begins with an empty folder each
+time.
 """
 
 import os
@@ -59,7 +60,8 @@ def seconds(name, kept):
 
 
 def table(measured, which):
-    """Lines of a table: least, median and largest milliseconds, and the median as a multiple of bare Python's."""
+    """Lines of a table: least, median and largest milliseconds, and the median as a multiple of bare
+    Python's."""
     bare = statistics.median(times[which] for times in measured[PYTHON])
     for name, all_times in measured.items():
         times = sorted(1000 * pair[which] for pair in all_times)

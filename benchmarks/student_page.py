@@ -1,5 +1,5 @@
-"""A student's pages in Chromium, as a telephone on a slow line has them: bytes cold and warm, first paint, taps to a marked answer,
-a polygon constructed by touch, axe.
+"""A student's pages in Chromium, as a telephone on a slow line has them: bytes cold and warm, first paint,
+taps to a marked answer, a polygon constructed by touch, axe.
 
     python benchmarks/student_page.py [EXERCISE]      slotted_mechanism; a minute
 
@@ -63,7 +63,8 @@ def weighed(context: Any, place: str, called: str) -> tuple[Any, list[tuple[str,
 
 
 def constructed(desk: Any) -> list[tuple[str, str]]:
-    """Return the taps and keys of each construction by touch, seconds of the script, and those of a hand at a usual pace."""
+    """Return the taps and keys of each construction by touch, seconds of the script, and those of a hand at a
+    usual pace."""
     rows = []
     for exercise in SCRIPTED:
         hand, begun = Draughtsman(desk, exercise), time.perf_counter()

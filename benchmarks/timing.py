@@ -16,7 +16,8 @@ Calls = Mapping[str, Callable[[], Any]]
 def times_in_turn(
     calls: Calls, rounds: int = 15, clock: Callable[[], float] = time.perf_counter
 ) -> dict[str, list[float]]:
-    """Seconds of each call, a round an item; every round runs all of them once, after one that does not count."""
+    """Seconds of each call, a round an item; every round runs all of them once, after one that does not
+    count."""
     found: dict[str, list[float]] = {name: [] for name in calls}
     for call in calls.values():
         call()
@@ -39,7 +40,8 @@ def median_ratio(times: list[float], others: list[float]) -> float:
 
 
 class Rounds(NamedTuple):
-    """Of one call, over rounds that each run all calls once: seconds by the clock, and of the processor's own time.
+    """Of one call, over rounds that each run all calls once: seconds by the clock, and of the processor's own
+    time.
 
     Where other processes take the processor too, its own time says more.
     """

@@ -42,7 +42,8 @@ def open_course(folder: str | Path | None = None) -> Course[Variant]:
 
 
 def mechanisms() -> Course[Variant]:
-    """Open the mechanisms that come with the package, each a file to start from: a course whose exercises solve and draw them.
+    """Open the mechanisms that come with the package, each a file to start from: a course whose exercises
+    solve and draw them.
 
     >>> "klann_leg" in mechanisms()
     True
@@ -125,8 +126,8 @@ def worked(
     lang
         Language of all that is said; the course's own unless told.
     level
-        0 tells the whole solution; 1, 2 and 3 leave the last question, a third and two thirds of them blank; 4 tells nothing but what
-        is asked. What is left is marked by ``check``.
+        0 tells the whole solution; 1, 2 and 3 leave the last question, a third and two thirds of them blank;
+        4 tells nothing but what is asked. What is left is marked by ``check``.
     parts
         The ids of the questions that it is about; all unless told.
     course

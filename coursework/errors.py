@@ -13,8 +13,8 @@ from coursework.messages import Message, as_message, localised
 class CourseworkError(Exception):
     """Base class of all deliberate errors: an English template and the values that fill it.
 
-    ``raise BadInput("{file} has no column {name!r}", file=path, name=name)``: the text is made in the reader's language when it
-    is printed. A text without values is a template without places to fill.
+    ``raise BadInput("{file} has no column {name!r}", file=path, name=name)``: the text is made in the
+    reader's language when it is printed. A text without values is a template without places to fill.
     """
 
     def __init__(self, *template: object, **values: object) -> None:
@@ -109,8 +109,8 @@ def counted(number: int, noun: str) -> Message:
 def closest(name: str, names: Iterable[str]) -> str | None:
     """Return the known name that may have been meant, whatever its case and accents; None where none is near.
 
-    Of a name of several words, in whatever order, each word must be near another one of the other's, so that nobody is
-    offered a namesake; a word of one letter or digit says too little.
+    Of a name of several words, in whatever order, each word must be near another one of the other's, so that
+    nobody is offered a namesake; a word of one letter or digit says too little.
     """
     import difflib
 
@@ -125,7 +125,8 @@ def closest(name: str, names: Iterable[str]) -> str | None:
     )
 
 
-#: Of two names, twice the letters in common over the letters of both; of symbols, whose letters are few, at least.
+#: Of two names, twice the letters in common over the letters of both; of symbols, whose letters are few, at
+#: least.
 _NEAR, _NEAR_SYMBOL = 0.6, 0.5
 _SYMBOL = 3  #: letters of a symbol at most
 

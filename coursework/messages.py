@@ -1,7 +1,7 @@
 """Messages in the reader's language: an English template, which is the key, and the values that fill it.
 
-The translations of a language are ``coursework/language/messages/LANG.toml``: tables of ``"template" = "translation"``. A
-template without a translation is printed in English.
+The translations of a language are ``coursework/language/messages/LANG.toml``: tables of
+``"template" = "translation"``. A template without a translation is printed in English.
 """
 
 from __future__ import annotations
@@ -41,7 +41,8 @@ def messages_in(lang: str) -> Iterator[None]:
 
 @cache
 def translations(lang: str) -> Mapping[str, str]:
-    """Return the translations into a language by their English templates; none for English or a language without file."""
+    """Return the translations into a language by their English templates; none for English or a language
+    without file."""
     path = CATALOGUES / f"{lang}.toml"
     if not path.is_file():
         return {}
@@ -50,7 +51,8 @@ def translations(lang: str) -> Mapping[str, str]:
 
 
 def number_form(number: float, lang: str) -> str:
-    """Return ``"one"`` if the noun of so many is singular, otherwise ``"many"``: French is singular below two, English at one only."""
+    """Return ``"one"`` if the noun of so many is singular, otherwise ``"many"``: French is singular below
+    two, English at one only."""
     return "one" if (number < 2 if lang in _ONE_BELOW_TWO else number == 1) else "many"
 
 
@@ -62,11 +64,12 @@ def _typeset(text: str, lang: str) -> str:
 
 
 class Message(str):
-    """English text that knows its template and the values in it, so that it can be printed in another language.
+    """English text that knows its template and the values in it, so that it can be printed in another
+    language.
 
-    ``Message("{file} has {count} lines", file=path, count=3)``: without values the template is the text, braces and all. A value
-    may be a message or an error: it is translated with the whole. ``line{count:|s}`` agrees with a number, or with a message
-    such as ``3 lines``, by the rule of the language.
+    ``Message("{file} has {count} lines", file=path, count=3)``: without values the template is the text,
+    braces and all. A value may be a message or an error: it is translated with the whole. ``line{count:|s}``
+    agrees with a number, or with a message such as ``3 lines``, by the rule of the language.
     """
 
     template: str
@@ -82,7 +85,8 @@ class Message(str):
         return _filled(self.template, self.values, lang)
 
     def replacing(self, old: str, new: str) -> Message:
-        """Return the message with a text replaced in all its values, such as the path of a temporary file by its name."""
+        """Return the message with a text replaced in all its values, such as the path of a temporary file by
+        its name."""
         if not self.values:
             return Message(self.template.replace(old, new))
         return Message(self.template, **{name: _replaced(v, old, new) for name, v in self.values.items()})
@@ -96,7 +100,8 @@ def _restored(template: str, values: dict[str, Any]) -> Message:
 
 
 def joined_notes(notes: Iterable[str], separator: str = "; ") -> str:
-    """Return notes as one message with a separator between them, each of which is still translated; "" without notes."""
+    """Return notes as one message with a separator between them, each of which is still translated; ""
+    without notes."""
     several = dict(zip(_PLACES, filter(None, notes), strict=False))
     if len(several) < 2:
         return next(iter(several.values()), "")
@@ -118,7 +123,8 @@ def as_message(text: object) -> Message:
 
 
 def localised(text: object, lang: str = "") -> str:
-    """Return an error or a message in a language, the current one where none is named; any other value as its text."""
+    """Return an error or a message in a language, the current one where none is named; any other value as its
+    text."""
     return as_message(text).in_language(lang or language_of_messages())
 
 

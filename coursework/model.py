@@ -130,7 +130,8 @@ def drawn(
     for bound in (low, high):
         if not (callable(bound) or _is_number(bound)):
             raise WrongValue(
-                f"a bound of drawn(low, high) is a number or a function of quantities declared before; found {bound!r}"
+                "a bound of drawn(low, high) is a number or a function of quantities declared before; "
+                f"found {bound!r}"
             )
     if _is_number(low) and _is_number(high) and low > high:  # type: ignore[operator]
         raise WrongValue(f"drawn(low, high) takes the smaller bound first; found {low}, {high}")
@@ -192,7 +193,8 @@ def chosen(*choices: str, shown: bool | tuple[str, ...] = True) -> GivenSpec:
         )
     if len(set(choices)) < max(2, len(choices)):
         raise WrongValue(
-            f"chosen(…) takes two cases or more, all different; found {', '.join(map(repr, choices)) or 'none'}"
+            "chosen(…) takes two cases or more, all different; found "
+            f"{', '.join(map(repr, choices)) or 'none'}"
         )
     return GivenSpec("1", choices=tuple(choices), shown=shown)
 
@@ -206,24 +208,25 @@ _OF_ITS_KIND: Any = None  #: stands for a margin until the part has taken that o
 class Part:
     """Question: its quantity, unit, points and marking.
 
-    ``kind``, a file of :mod:`coursework.kinds`, is ``number``, ``angle`` (compared modulo 360), ``integer``, ``choice`` (of ``choices``),
-    ``point`` (by its distance to the reference), ``point_on_line`` (a point of the line through the reference
-    along the quantity ``along``),
-    ``direction`` (any non-zero multiple of the reference vector) or ``equation`` (in the exercise's
-    symbols ``variables``, up to a factor, which may hold those of them that are ``parameters``: lengths), ``complex``
-    (by its distance to the reference), ``vector`` and ``matrix`` (entry by entry), ``twist`` and ``wrench`` (two columns,
-    component by component), ``twist_pattern`` and ``wrench_pattern`` (which components may differ from zero), ``choices`` (several right ones of
-    ``choices``), ``text`` or ``drawing``, which a person marks: their ``room`` is a number of lines, or the width and
-    height in mm of a box, of ``millimetre`` paper where it is told. An
-    equation that closes a ``loop`` of the solution is right in any form: :func:`loop_equations`.
-    A numeric answer is right within max(``atol``, ``rtol`` · |reference|), by default 1 %, or 1° for what
-    is measured in degrees. ``when``, a function of given quantities, says whether a variant asks the part.
-    With ``asks_unit`` the sheet prints no unit beside the box, and an answer without one lacks something.
-    Parts that name the same ``judge``, a function of the solution, are judged together by it: where many
-    answers are right, and the quantity is only one of them. Their ``atol`` and ``rtol`` are the judge's.
-    A part ``by_request`` is asked only where a build names it. Choices are printed in an order that is the variant's;
-    with ``ordered`` in that which is stated. Numbers, Roman classes, yes and no keep their order without it, and ``none`` stands
-    last; with ``shuffled`` they do not: where one case is right in every variant, its place must tell nothing.
+    ``kind``, a file of :mod:`coursework.kinds`, is ``number``, ``angle`` (compared modulo 360), ``integer``,
+    ``choice`` (of ``choices``), ``point`` (by its distance to the reference), ``point_on_line`` (a point of
+    the line through the reference along the quantity ``along``), ``direction`` (any non-zero multiple of the
+    reference vector) or ``equation`` (in the exercise's symbols ``variables``, up to a factor, which may hold
+    those of them that are ``parameters``: lengths), ``complex`` (by its distance to the reference),
+    ``vector`` and ``matrix`` (entry by entry), ``twist`` and ``wrench`` (two columns, component by
+    component), ``twist_pattern`` and ``wrench_pattern`` (which components may differ from zero), ``choices``
+    (several right ones of ``choices``), ``text`` or ``drawing``, which a person marks: their ``room`` is a
+    number of lines, or the width and height in mm of a box, of ``millimetre`` paper where it is told. An
+    equation that closes a ``loop`` of the solution is right in any form: :func:`loop_equations`. A numeric
+    answer is right within max(``atol``, ``rtol`` · |reference|), by default 1 %, or 1° for what is measured
+    in degrees. ``when``, a function of given quantities, says whether a variant asks the part. With
+    ``asks_unit`` the sheet prints no unit beside the box, and an answer without one lacks something. Parts
+    that name the same ``judge``, a function of the solution, are judged together by it: where many answers
+    are right, and the quantity is only one of them. Their ``atol`` and ``rtol`` are the judge's. A part
+    ``by_request`` is asked only where a build names it. Choices are printed in an order that is the
+    variant's; with ``ordered`` in that which is stated. Numbers, Roman classes, yes and no keep their order
+    without it, and ``none`` stands last; with ``shuffled`` they do not: where one case is right in every
+    variant, its place must tell nothing.
     """
 
     quantity: str
@@ -265,7 +268,8 @@ class Part:
         self._check_room(sort)
         if self.loop and (not self.variables or _loop_form(self) is None):
             raise BadCourse(
-                f"part {self.quantity!r}: an equation of the loop {self.loop!r} is called {self.loop}_x, {self.loop}_y or "
+                f"part {self.quantity!r}: an equation of the loop {self.loop!r} is called "
+                f"{self.loop}_x, {self.loop}_y or "
                 f"{self.loop}_complex, and its derivatives {self.loop}_x_dot, {self.loop}_x_ddot"
             )
         if len(self.choices) > len(LETTERS):
@@ -276,7 +280,8 @@ class Part:
             raise BadCourse(f"part {self.quantity!r}: 'ordered' is said of choices, and it has none")
         if self.shuffled and (self.ordered or not self.choices):
             raise BadCourse(
-                f"part {self.quantity!r}: 'shuffled' is said of choices that are not 'ordered'; found ordered={self.ordered}, "
+                f"part {self.quantity!r}: 'shuffled' is said of choices that are not 'ordered'; found "
+                f"ordered={self.ordered}, "
                 f"{len(self.choices)} choices"
             )
         if self.asks_unit and (self.is_exact or self.unit == "1"):
@@ -438,8 +443,8 @@ def loop_equations(
     usual: Sequence[str] = (),
     points: float = 1,
 ) -> tuple[Part, ...]:
-    """Return the equations that close a loop of the solution, as parts: projections on x and y, and the complex
-    form.
+    """Return the equations that close a loop of the solution, as parts: projections on x and y, and the
+    complex form.
 
     With ``rates`` and ``second_rates`` the derivatives of the closure are parts as well: ``loop_1_x_dot``,
     ``loop_1_x_ddot``. All are asked by request, but the forms that are usual.
@@ -486,8 +491,8 @@ def loop_equations(
 
 @dataclass(frozen=True)
 class Jack:
-    """Jack that drives a mechanism, by names of given quantities: its length (mm), the first and second rates of it,
-    and the two lengths between which it travels.
+    """Jack that drives a mechanism, by names of given quantities: its length (mm), the first and second rates
+    of it, and the two lengths between which it travels.
     """
 
     length: str
@@ -505,8 +510,8 @@ class Driver:
     must supply, ``output`` a velocity that vanishes at the dead centres.
 
     Where the angle is an answer, so not among what is given, a helper of its name says it of the figure, and
-    ``poses`` moves the mechanism: a function of given quantities, of helpers, and of the angle as ``driven``, to
-    the given quantities that place the mechanism there, on arrays.
+    ``poses`` moves the mechanism: a function of given quantities, of helpers, and of the angle as ``driven``,
+    to the given quantities that place the mechanism there, on arrays.
 
     Where a ``jack`` turns the body of that angle, a cycle is its travel from limit to limit.
     """
@@ -551,7 +556,8 @@ def _is_clear(gap: Any, least: float, most: float) -> Any:
 
 @dataclass(frozen=True)
 class Detectable:
-    """Constraint: a named mistake of the solution makes of each of some quantities what is :func:`clearly_apart`."""
+    """Constraint: a named mistake of the solution makes of each of some quantities what is
+    :func:`clearly_apart`."""
 
     mistake: str
     quantities: tuple[str, ...]
@@ -614,9 +620,9 @@ class Exercise:
     parts
         The questions, in order.
     constraints
-        What a variant must satisfy: functions of quantities to booleans, on arrays; a name says what it wants, since
-        refusals are counted by it. A quantity is given, or computed by a helper or by the solution. That a named
-        mistake shows in the answers is :func:`detectable`.
+        What a variant must satisfy: functions of quantities to booleans, on arrays; a name says what it
+        wants, since refusals are counted by it. A quantity is given, or computed by a helper or by the
+        solution. That a named mistake shows in the answers is :func:`detectable`.
     helpers
         Functions that the figure and the constraints share; their names are quantities to them.
     figure
@@ -659,7 +665,8 @@ class Exercise:
         object.__setattr__(self, "parts", tuple(self.parts))
         if self.drawing_mm is not None and not _fits_a_page(self.drawing_mm):
             raise BadCourse(
-                f"a box to draw in is 10 to 160 mm wide and 10 to 200 mm high, by tens; found {self.drawing_mm}"
+                "a box to draw in is 10 to 160 mm wide and 10 to 200 mm high, by tens; found "
+                f"{self.drawing_mm}"
             )
         if not self.given or not self.parts:
             raise BadCourse("an exercise needs given quantities and parts; one of them is empty")

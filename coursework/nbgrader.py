@@ -1,7 +1,8 @@
 """Support for nbgrader: it collects notebooks and stores the points; coursework marks the answers and runs
 no cell of a student.
 
-``nbgrader_config.py`` names :func:`configure`; the preprocessors need nbgrader installed, and are loaded when they are asked for.
+``nbgrader_config.py`` names :func:`configure`; the preprocessors need nbgrader installed, and are loaded when
+they are asked for.
 """
 
 from __future__ import annotations

@@ -2,23 +2,31 @@
 
 ``solutions/NAME.py`` is read by these rules:
 
-* a public function defined in it is a quantity, and its parameters are what it needs; so is one that it imports
+* a public function defined in it is a quantity, and its parameters are what it needs; so is one that it
+  imports
   from a sibling whose name begins with an underscore: ``from ._strokes import *``;
 * a function marked :func:`mistake` is a wrong way to get a quantity;
 * a function marked :func:`judge` says which answers are right, where many are;
-* ``residual`` gives the governing equations, written independently: 0 when right, but for rounding of their terms;
+* ``residual`` gives the governing equations, written independently: 0 when right, but for rounding of their
+  terms;
 * ``KNOWN`` lists pairs (given values, expected values), best written ``given(r1=200).gives(rA=300)``
   (:func:`given`); an expected text such as ``"319.80"`` is right to its last printed digit, a number to 1e-9
   relative; a third item names the case's effects, where they are not those of the exercise's own parts;
 * ``motion`` gives points that move, as a dict of :class:`Moving`, for animations;
-* ``FILM``, a :class:`Film`, states a picture of its own for the animation, where the statement's figure cannot move;
-* ``polygons`` gives the velocity and acceleration polygons, each a :class:`~coursework.figures.polygons.Polygon`;
+* ``FILM``, a :class:`Film`, states a picture of its own for the animation, where the statement's figure
+  cannot move;
+* ``polygons`` gives the velocity and acceleration polygons, each a
+  :class:`~coursework.figures.polygons.Polygon`;
 * ``overlay`` gives what a student drew over the right construction, where that is no polygon, as an
-  :class:`~coursework.figures.polygons.own_drawing.OwnDrawing`: a function of ``answers``, as those of a judge, and of quantities;
-* ``LOOPS`` states the closed loops as vectors, by name; their equations are quantities: :mod:`coursework.quantities.loops`;
+  :class:`~coursework.figures.polygons.own_drawing.OwnDrawing`: a function of ``answers``, as those of a
+  judge, and of quantities;
+* ``LOOPS`` states the closed loops as vectors, by name; their equations are quantities:
+  :mod:`coursework.quantities.loops`;
   ``RATES`` gives the names of derivatives that do not follow from a quantity's own;
-* ``MECHANISM`` states bodies and joints, a :class:`~coursework.mechanics.Mechanism`: forces and motions follow from it;
-* ``EFFECTS`` names what a scene shows of each effect, where it is not what ``LOOPS`` say: :mod:`coursework.scenes.effects`;
+* ``MECHANISM`` states bodies and joints, a :class:`~coursework.mechanics.Mechanism`: forces and motions
+  follow from it;
+* ``EFFECTS`` names what a scene shows of each effect, where it is not what ``LOOPS`` say:
+  :mod:`coursework.scenes.effects`;
 * ``STRUCTURES`` names the quantities whose value is a list or a record, such as a list of joints: a request
   may give them, and they are passed to the functions as they come;
 * ``UNITS`` and ``SYMBOLS`` give unit and LaTeX of quantities that no part and no name says;
@@ -143,7 +151,8 @@ def told_after(*names: str) -> Callable[[Callable[..., Any]], Callable[..., Any]
         @told_after("transmitted")
         def rs(_combined): ...
 
-    So the table of what is transmitted stands before the rank that is counted in it, whichever questions are asked.
+    So the table of what is transmitted stands before the rank that is counted in it, whichever questions are
+    asked.
 
     Parameters
     ----------
@@ -252,11 +261,11 @@ def given(**values: Any) -> Case:
 class Judged:
     """Judgement of one answer.
 
-    ``share``, 0 to 1, is the part of the points that it earns; ``mistake`` the named mistake that it shows, if
-    any; ``found`` what follows from the student's own answers, by quantity, in canonical units: it is told.
-    ``also``: other named mistakes that explain the same answer.
-    ``follows``: the answer is not the expected one, but right from an earlier answer of the student that is wrong.
-    ``slip``: what is missed that the engine tells, such as ``not_drawn``; its price is that of the course.
+    ``share``, 0 to 1, is the part of the points that it earns; ``mistake`` the named mistake that it shows,
+    if any; ``found`` what follows from the student's own answers, by quantity, in canonical units: it is
+    told. ``also``: other named mistakes that explain the same answer. ``follows``: the answer is not the
+    expected one, but right from an earlier answer of the student that is wrong. ``slip``: what is missed that
+    the engine tells, such as ``not_drawn``; its price is that of the course.
     """
 
     share: float = 1.0
@@ -327,11 +336,11 @@ class Moving:
 class Film:
     """Animation with a picture of its own, for a statement whose figure cannot move.
 
-    ``angle`` names the driving angle, degrees: 0 in the first picture, so no given quantity. ``speed`` names its rate,
-    whose sign says which way it turns. ``figure`` is a function of that angle and of any quantities of the
-    solution to a :class:`~coursework.figures.Figure`, ``turns`` one of quantities alone to how many turns of the driver
-    are shown, whole or not; then the film starts over. Its words are the section ``motion`` of the solution's texts, and the
-    points of ``motion`` may take the angle as well.
+    ``angle`` names the driving angle, degrees: 0 in the first picture, so no given quantity. ``speed`` names
+    its rate, whose sign says which way it turns. ``figure`` is a function of that angle and of any quantities
+    of the solution to a :class:`~coursework.figures.Figure`, ``turns`` one of quantities alone to how many
+    turns of the driver are shown, whole or not; then the film starts over. Its words are the section
+    ``motion`` of the solution's texts, and the points of ``motion`` may take the angle as well.
     """
 
     figure: Callable[..., Any]
@@ -383,7 +392,8 @@ class Solution:
         Raises
         ------
         BadCourse
-            It defines no quantity, a mistake about something that it does not have, or a ``FILM`` that is none.
+            It defines no quantity, a mistake about something that it does not have, or a ``FILM`` that is
+            none.
         """
         selected = {
             key: value
@@ -548,7 +558,8 @@ def _check_told(source: str, graph: Graph) -> None:
         for before in graph.node(name).told_after:
             if before not in graph.quantities:
                 raise BadCourse(
-                    f"{source}: {name} is told after {before!r}, which is no quantity{nearest(before, graph.quantities)}"
+                    f"{source}: {name} is told after {before!r}, which is no "
+                    f"quantity{nearest(before, graph.quantities)}"
                 )
 
 

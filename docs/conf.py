@@ -1,4 +1,5 @@
-"""How the documentation is built: Markdown pages, the reference from docstrings, nothing fetched from elsewhere."""
+"""How the documentation is built: Markdown pages, the reference from docstrings, nothing fetched from
+elsewhere."""
 
 import re
 
@@ -64,7 +65,8 @@ _PARAMETERS = re.compile(r"<dl>((?:\s*<dd>.*?</dd>)+\s*)</dl>", re.DOTALL)
 
 
 def _for_everybody(app, pagename, templatename, context, doctree):
-    """What scrolls sideways is reached by keyboard; the parameters of a signature are no list of definitions."""
+    """What scrolls sideways is reached by keyboard; the parameters of a signature are no list of
+    definitions."""
     if pagename.endswith(".fr"):
         context["language"] = "fr"
     body = context.get("body", "")
@@ -80,7 +82,8 @@ def _for_everybody(app, pagename, templatename, context, doctree):
     )
 
 
-#: What stands in French before its marks and within its quotation marks: a space that does not break. Code stays.
+#: What stands in French before its marks and within its quotation marks: a space that does not break. Code
+#: stays.
 _FRENCH = re.compile(
     r"(^(`{3,}).*?^\2$|`[^`\n]*`)|(?<=\S) (?=[;:!?»](?:\s|$))|(?<=«) ", re.MULTILINE | re.DOTALL
 )

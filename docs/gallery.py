@@ -87,13 +87,14 @@ def first_page(typst_source: str) -> bytes:
 
 
 def index(course: Course) -> str:
-    """All exercises at a glance, chapter by chapter in the order in which they are learnt, each a link to its page."""
+    """All exercises at a glance, chapter by chapter in the order in which they are learnt, each a link to its
+    page."""
     listed = "\n".join(course.folder.in_order)
     chapters = "\n".join(_chapter(course, chapter) for chapter in course.folder.chapters)
     return f"""# Gallery
 
-The {len(course.names)} exercises of the built-in course, in the order in which they are learnt, each as variant {SEED} draws
-it. This page is made from the course at every build.
+The {len(course.names)} exercises of the built-in course, in the order in which they are learnt, each as
+variant {SEED} draws it. This page is made from the course at every build.
 
 {chapters}
 
@@ -184,7 +185,8 @@ def _polygons(variant: Variant) -> list[str]:
 
 
 def _links(exercise: CourseExercise, lang: str) -> list[str]:
-    """Whole pages that stand alone: the worked solution, with its polygons, and the animation with its slider."""
+    """Whole pages that stand alone: the worked solution, with its polygons, and the animation with its
+    slider."""
     to = {"solution": "The worked solution"}
     if exercise.is_animated:
         to["motion"] = "The mechanism in motion, with a slider"

@@ -1,7 +1,7 @@
 """Draws the rooms of the package from their imports: ``python docs/import_graph.py OUT.svg``.
 
-A room stands one floor above the highest room that it imports from. What is drawn in bold is what a student's answer
-passes on its way from a text to a mark.
+A room stands one floor above the highest room that it imports from. What is drawn in bold is what a student's
+answer passes on its way from a text to a mark.
 """
 
 from __future__ import annotations

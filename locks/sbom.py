@@ -1,4 +1,5 @@
-"""Write the inventory of what a lock file installs, with the third-party files of the package itself, as CycloneDX 1.6 (JSON).
+"""Write the inventory of what a lock file installs, with the third-party files of the package itself, as
+CycloneDX 1.6 (JSON).
 
 Run by ``make sbom``: python locks/sbom.py locks/site.txt build/site.cdx.json
 """
@@ -29,10 +30,22 @@ def component(asset: dict[str, str]) -> dict[str, object]:
 def main(lock: str, out: str) -> None:
     """Write the inventory of one lock file."""
     made = subprocess.run(
-        [sys.executable, "-m", "cyclonedx_py", "requirements", lock, "--pyproject", str(ROOT / "pyproject.toml"),
-         "--sv", "1.6", "--output-reproducible"],
-        stdout=subprocess.PIPE, check=True, text=True,
-    )  # fmt: skip
+        [
+            sys.executable,
+            "-m",
+            "cyclonedx_py",
+            "requirements",
+            lock,
+            "--pyproject",
+            str(ROOT / "pyproject.toml"),
+            "--sv",
+            "1.6",
+            "--output-reproducible",
+        ],
+        stdout=subprocess.PIPE,
+        check=True,
+        text=True,
+    )
     inventory = json.loads(made.stdout)
     inventory["components"] += [component(asset) for asset in ASSETS]
     path = Path(out)

@@ -29,7 +29,8 @@ def animation(name, seed=1, lang="fr", effects=()):
 
 
 def points_at(exercise, given, angle):
-    """The points that a solution moves, or those of its mechanism, the driver at an angle or at many, degrees."""
+    """The points that a solution moves, or those of its mechanism, the driver at an angle or at many,
+    degrees."""
     solution = exercise.solution
     if solution.motion is None:
         return Scene(exercise, given).moving_points(np.atleast_1d(angle))

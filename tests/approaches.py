@@ -39,7 +39,10 @@ class Miss:
         rest = ", ".join(f"{n}={v}" for n, v in self.given.items() if n not in (moved, tuned))
         if self.error is None:
             return f"{self.quantity}: no answer at {where} ({rest})"
-        return f"{self.quantity}: off by {self.relative:.1e} relative, {self.times:.1e} x conditioning, at {where} ({rest})"
+        return (
+            f"{self.quantity}: off by {self.relative:.1e} relative, {self.times:.1e} x conditioning, at "
+            f"{where} ({rest})"
+        )
 
 
 def misses(
@@ -87,7 +90,8 @@ def _along(
         right = {n: v for n, v in reference.at(given).items() if v is not None and n in answers - other}
         off = {n: _off(reference, n, result[n][i], v) for n, v in right.items()}
         if distance >= _FAR:
-            # So far from the place no rounding explains this: the formula is of another case of the mechanism.
+            # So far from the place no rounding explains this: the formula is of another case of the
+            # mechanism.
             other |= {n for n, error in off.items() if error > 1e-6 * _largest(right[n])}
         # What is right to the last digits needs no conditioning.
         doubtful = {

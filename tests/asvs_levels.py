@@ -1,4 +1,5 @@
-"""The requirements of OWASP ASVS 5.0.0 of levels 1 and 2: the numbers of each section, level 1 first, then level 2."""
+"""The requirements of OWASP ASVS 5.0.0 of levels 1 and 2: the numbers of each section, level 1 first, then
+level 2."""
 
 #: Section: numbers of level 1, numbers of level 2.
 LEVELS: dict[str, tuple[tuple[int, ...], tuple[int, ...]]] = {
@@ -77,4 +78,4 @@ LEVELS: dict[str, tuple[tuple[int, ...], tuple[int, ...]]] = {
     "17.1": ((), (1,)),
     "17.2": ((), (1, 2, 3, 4)),
     "17.3": ((), (1, 2)),
-}  # fmt: skip
+}

@@ -49,9 +49,12 @@ class Machines:
         with log:
             process = subprocess.Popen(
                 [sys.executable, "-P", "-m", "dask", *map(str, arguments)],
-                stdout=log, stderr=subprocess.STDOUT, cwd=self.folder, start_new_session=True,
+                stdout=log,
+                stderr=subprocess.STDOUT,
+                cwd=self.folder,
+                start_new_session=True,
                 env={**self.environment, "PYTHONPATH": str(path or self._nothing)},
-            )  # fmt: skip
+            )
         self.started.append(process)
         return process
 
@@ -72,8 +75,16 @@ class Machines:
 
     def worker(self, *options, path=PACKAGE):
         return self._start(
-            "worker", self.address, "--nthreads", 1, "--no-dashboard", "--local-directory", self.folder, *options, path=path
-        )  # fmt: skip
+            "worker",
+            self.address,
+            "--nthreads",
+            1,
+            "--no-dashboard",
+            "--local-directory",
+            self.folder,
+            *options,
+            path=path,
+        )
 
     def workers(self, count, *options):
         started = [self.worker(*options) for _ in range(count)]
@@ -89,7 +100,8 @@ class Machines:
         code = (
             "import sys, distributed\n"
             "with distributed.Client(sys.argv[1], timeout=5, set_as_default=False) as client:\n"
-            "    print(client.run_on_scheduler(eval('lambda dask_scheduler: (lambda s: ' + sys.argv[2] + ')(dask_scheduler)')))\n"
+            "    print(client.run_on_scheduler(eval('lambda dask_scheduler: (lambda s: ' + sys.argv[2] "
+            "+ ')(dask_scheduler)')))\n"
         )
         told = [sys.executable, "-c", code, self.address, what]
         return subprocess.run(

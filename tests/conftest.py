@@ -37,7 +37,8 @@ def pytest_addoption(parser):
         "--share",
         metavar="K/N",
         default="0/1",
-        help="run the K-th of N shares of the slow tests, K from 0 on, one of N/2 shares of the sweeps, one of N/16 of the whole commands",
+        help="run the K-th of N shares of the slow tests, K from 0 on, one of N/2 shares of the sweeps, one "
+        "of N/16 of the whole commands",
     )
 
 
@@ -49,7 +50,8 @@ class _Backwards(pytest.Dir):
 
 
 def pytest_collect_directory(path, parent):
-    """Every second worker begins at the end: the files that the others have compiled by then, it need not compile."""
+    """Every second worker begins at the end: the files that the others have compiled by then, it need not
+    compile."""
     worker = getattr(parent.config, "workerinput", {"workerid": "gw0"})["workerid"]
     return _Backwards.from_parent(parent, path=path) if int(worker[2:]) % 2 else None
 
@@ -91,12 +93,14 @@ def _shares_of(item, shares):
 
 
 def _drawn_by(item):
-    """Return the text that decides on a test's share: whole commands and browsers of one file share what they build."""
+    """Return the text that decides on a test's share: whole commands and browsers of one file share what they
+    build."""
     return item.nodeid.partition("::")[0] if item.get_closest_marker("e2e") else item.nodeid
 
 
 def pytest_collection_finish(session):
-    """What was imported and collected stays to the end: the garbage collector need not look at it again and again."""
+    """What was imported and collected stays to the end: the garbage collector need not look at it again and
+    again."""
     gc.collect()
     gc.freeze()
     gc.set_threshold(20_000, 20, 50)
@@ -104,14 +108,16 @@ def pytest_collection_finish(session):
 
 @pytest.hookimpl(tryfirst=True)
 def pytest_runtest_setup(item):
-    """Secrets of assignments are the same in each run, and different within a test: what is drawn hangs on no luck."""
+    """Secrets of assignments are the same in each run, and different within a test: what is drawn hangs on no
+    luck."""
     drawn = count()
     Secret.new = classmethod(lambda cls: cls(sha256(f"test {next(drawn)}".encode()).digest()[:16]))
 
 
 def pytest_configure(config):
-    """What the tests write is in memory where there is room for it, and goes with them unless one fails: a database waits for the
-    disk at each commit, and most of the tests' time would go by that. Whoever names a place has it there.
+    """What the tests write is in memory where there is room for it, and goes with them unless one fails: a
+    database waits for the disk at each commit, and most of the tests' time would go by that. Whoever names a
+    place has it there.
     """
     is_told = "TMPDIR" in os.environ or config.option.basetemp or hasattr(config, "workerinput")
     if is_told or not MEMORY.is_dir() or not os.access(MEMORY, os.W_OK):
@@ -129,7 +135,8 @@ def pytest_configure(config):
 
 
 def _forget_ended_runs():
-    """Remove what runs that failed or were killed left in memory, but for the last of them, which somebody may look at."""
+    """Remove what runs that failed or were killed left in memory, but for the last of them, which somebody
+    may look at."""
     left = []
     for place in MEMORY.glob(f"{_PREFIX}*-*"):
         process = place.name.removeprefix(_PREFIX).partition("-")[0]

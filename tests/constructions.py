@@ -1,4 +1,5 @@
-"""The drawn exercises of the course, each constructed as a student does: from what the sheet states, and what is drawn."""
+"""The drawn exercises of the course, each constructed as a student does: from what the sheet states, and what
+is drawn."""
 
 import math
 
@@ -98,8 +99,10 @@ def crank_shaper_drawn(hand):
     hand.meet("e", (hand.at["d"], "perpendicular", "DE"), (hand.at["p"], "parallel", "x"))
     _measure(hand, pv_b="pb", pv_e="pe")
     omega4, sliding, along_rod = (
-        hand.rate("p", "b", "OP", OP), _along(hand, "b", "a", "OP"), abs(hand.at["e"] - hand.at["d"]) * hand.scale,
-    )  # fmt: skip
+        hand.rate("p", "b", "OP", OP),
+        _along(hand, "b", "a", "OP"),
+        abs(hand.at["e"] - hand.at["d"]) * hand.scale,
+    )
     velocities = {"omega4": omega4, "v_C": _along(hand, "p", "e")}
     _crank_turning_steadily(hand, "CP", pole=60 + 45j, scale="ka", names="q a2")
     _lever(hand, "OP", "a2", "k", "n", "b2", omega4, sliding, OP, pole="q")
@@ -204,14 +207,16 @@ def _crank_turning_steadily(hand, link, pole=POLE, scale="", names="p a"):
 
 
 def _normal(hand, name, start, link, speed, length):
-    """The normal part of an acceleration, towards the start of a link; towards its end where the speed is negative."""
+    """The normal part of an acceleration, towards the start of a link; towards its end where the speed is
+    negative."""
     size = speed**2 / length / hand.scale
     way = -math.copysign(1, speed) * cis(hand.links[link])
     hand.lay_off(hand.at[start], "parallel", link, way * size, name, f"{size:.4g}")
 
 
 def _lever(hand, link, a, k, n, b, omega, sliding, arm, pole="p"):
-    """The acceleration of a slotted lever: Coriolis' ends in the point of the crank, then the two that are unknown meet."""
+    """The acceleration of a slotted lever: Coriolis' ends in the point of the crank, then the two that are
+    unknown meet."""
     along = cis(hand.links[link])
     hand.lay_off(hand.at[a], "perpendicular", link, -2j * omega * sliding * along / hand.scale, k)
     hand.lay_off(hand.at[pole], "parallel", link, -(omega**2) * arm * along / hand.scale, n)

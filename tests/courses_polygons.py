@@ -100,7 +100,8 @@ def jack(v):
     return {"a": polar(v["a"], v["theta4"]), "g": polar(v["c"], v["theta4"] + v["eta"])}
 
 
-#: The given angle or length that moves the mechanism, that of its drive, the quantities that place it, its points.
+#: The given angle or length that moves the mechanism, that of its drive, the quantities that place it, its
+#: points.
 PLACES = {
     "slider_crank": ("theta2", "theta2", ("p", "q"), crank_rod("b")),
     "slider_crank_torque": ("theta2", "theta2", ("p", "q"), crank_rod("b")),

@@ -1,4 +1,5 @@
-"""A class on the desk: six students with one variant of one exercise, and what each wrote to two of its questions."""
+"""A class on the desk: six students with one variant of one exercise, and what each wrote to two of its
+questions."""
 
 import re
 
@@ -15,10 +16,18 @@ EXERCISE, SEED = "slotted_mechanism", 42
 STUDENTS = ("Ada", "Bo", "Cy", "Di", "Ed", "Flo")
 OTHER = "Emmy Teacher"  #: a second instructor
 STATED = {
-    "name": "week3", "title": {"fr": "Devoir 2", "en": "Midterm 2"}, "course": {"": "Mechanics"}, "date": "2026-12-04",
-    "duration": {"": "1 h"}, "mark": {"of": 20, "step": 0.5}, "identity": ["number"], "sittings": "best", "answers": "shown",
-    "marking": {}, "exercises": [EXERCISE],
-}  # fmt: skip
+    "name": "week3",
+    "title": {"fr": "Devoir 2", "en": "Midterm 2"},
+    "course": {"": "Mechanics"},
+    "date": "2026-12-04",
+    "duration": {"": "1 h"},
+    "mark": {"of": 20, "step": 0.5},
+    "identity": ["number"],
+    "sittings": "best",
+    "answers": "shown",
+    "marking": {},
+    "exercises": [EXERCISE],
+}
 
 
 class DeskClass(Class):
@@ -32,9 +41,12 @@ class DeskClass(Class):
             for k, name in enumerate(STUDENTS)
         }
         content = {
-            "format": 1, "roster": True, "assignment": STATED, "students": columns,
+            "format": 1,
+            "roster": True,
+            "assignment": STATED,
+            "students": columns,
             "issued": [{"student": name, "record": self.variant.record} for name in STUDENTS],
-        }  # fmt: skip
+        }
         with self.site.store.begin() as connection:
             self.ids[OTHER] = put_person(connection, identifier=OTHER, name=OTHER, lang="", columns={})
             put_account(connection, self.ids[OTHER], login="emmy@example.org", role="instructor")

@@ -1,4 +1,5 @@
-"""A figure read back from its SVG, without the package's own geometry: its strokes, and what its labels meet."""
+"""A figure read back from its SVG, without the package's own geometry: its strokes, and what its labels
+meet."""
 
 import cmath
 import math

@@ -25,8 +25,13 @@ def begun(place, *words, script=None):
     env = {**os.environ, "TMPDIR": str(temporary), "PYTHONPATH": path, "COLUMNS": "300"}
     return subprocess.Popen(
         [sys.executable, "-P", str(main), *map(str, words)],
-        cwd=place, env=env, text=True, stdout=subprocess.PIPE, stderr=subprocess.PIPE, start_new_session=True,
-    )  # fmt: skip
+        cwd=place,
+        env=env,
+        text=True,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        start_new_session=True,
+    )
 
 
 def ended(process):

@@ -2,7 +2,8 @@
 
 from exact_joints import actions, exact_rank
 
-#: What a joint forbids of the relative motion (rotation, velocity at the origin), a row each: what it transmits.
+#: What a joint forbids of the relative motion (rotation, velocity at the origin), a row each: what it
+#: transmits.
 hindered = actions
 
 

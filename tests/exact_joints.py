@@ -67,7 +67,8 @@ def letters(direction):
 
 
 def turned(vector, tilt):
-    """Five times a vector turned about the axis of a letter, by the angle of cosine 4/5 and sine 3/5; or the vector."""
+    """Five times a vector turned about the axis of a letter, by the angle of cosine 4/5 and sine 3/5; or the
+    vector."""
     if not tilt:
         return list(vector)
     k = "xyz".index(tilt)
@@ -97,7 +98,8 @@ def arrangement(given):
 
 
 def motions(name, direction, point):
-    """Rotation and velocity at the origin of what a joint leaves free; a direction may be given by its axes."""
+    """Rotation and velocity at the origin of what a joint leaves free; a direction may be given by its
+    axes."""
     axes, (turns, slides) = letters(direction), FREE[name]
     return [[*axes[k], *cross(point, axes[k])] for k in turns] + [[0, 0, 0, *axes[k]] for k in slides]
 

@@ -1,5 +1,6 @@
-"""Forces in a mechanism at many digits, by another road: positions alone are taken from the textbook formulas, motions are
-differences of positions, moments are taken about the centres of mass, friction is found by substitution.
+"""Forces in a mechanism at many digits, by another road: positions alone are taken from the textbook
+formulas, motions are differences of positions, moments are taken about the centres of mass, friction is found
+by substitution.
 """
 
 from __future__ import annotations
@@ -13,8 +14,8 @@ STEP = mpmath.mpf(10) ** -25  #: radians: differences are good to some 40 digits
 
 
 class ExactMechanics:
-    """A mechanism of an exercise, at a driver's angle (degrees), speed and acceleration; at a jack's length (mm), speed and
-    acceleration where one drives: then its thrust (N) is what balances."""
+    """A mechanism of an exercise, at a driver's angle (degrees), speed and acceleration; at a jack's length
+    (mm), speed and acceleration where one drives: then its thrust (N) is what balances."""
 
     def __init__(self, exercise, mechanism, given, angle, speed, acceleration):
         self.mp = mpmath.MPContext()
@@ -107,8 +108,13 @@ class ExactMechanics:
             columns.append([(slide.of, at, 1j * along, 0), (slide.on, at, -1j * along, 0)])
             columns.append([(slide.of, at, 0, 1), (slide.on, at, 0, -1)])
             if friction and slide.at in friction and not isinstance(friction[slide.at], tuple):
-                rubs.append(((f"{name}_n",), mp.mpf(friction[slide.at]) * mp.sign(self._slip(slide, along)),
-                             [(slide.of, at, -along, 0), (slide.on, at, along, 0)]))  # fmt: skip
+                rubs.append(
+                    (
+                        (f"{name}_n",),
+                        mp.mpf(friction[slide.at]) * mp.sign(self._slip(slide, along)),
+                        [(slide.of, at, -along, 0), (slide.on, at, along, 0)],
+                    )
+                )
         for gear in self.mechanism.gears:
             first, second = (mp.mpf(number(r, self.values)) for r in gear.radii)
             one, two = (self.place(self.mechanism.body(n).at, n) for n in (gear.first, gear.second))

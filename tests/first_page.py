@@ -1,4 +1,5 @@
-"""Ask the first page and a style sheet of the site of the package that is installed here: ``python -P tests/first_page.py``."""
+"""Ask the first page and a style sheet of the site of the package that is installed here:
+``python -P tests/first_page.py``."""
 
 from __future__ import annotations
 

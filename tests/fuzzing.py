@@ -1,4 +1,5 @@
-"""Each reader with samples of what it reads and the words of its format; what it may answer; how long, in how much memory."""
+"""Each reader with samples of what it reads and the words of its format; what it may answer; how long, in how
+much memory."""
 
 from __future__ import annotations
 
@@ -21,16 +22,89 @@ SECONDS = 20  #: of processor, of one case: the dearest takes a hundredth of it
 ROOM = 700_000_000  #: bytes, of one case, beside what the process has
 
 COMMON = (
-    "\0", "\ufeff", "\ud800", "\x1b[31m", "\u202e", "'" * 40, '"' * 41, '"', '""', "'", "\r", "\n", "\r\n", "\x85", "\u2028", "\t",
-    ";" * 30, "," * 300, "-", "=cmd()|x", "../../etc/passwd", "9" * 400, "9" * 5000, "-1", "1e999", "nan", "inf", "1e-400", "٣", "²",
-    "é" * 500, "%s%n{0}{}", "${7*7}", "None", "true", "0x1F", "1_000", "a\u0301", "ﬁ", "İ", "ß", "\\", "\\u0000", "\\ud800",
-)  # fmt: skip
+    "\0",
+    "\ufeff",
+    "\ud800",
+    "\x1b[31m",
+    "\u202e",
+    "'" * 40,
+    '"' * 41,
+    '"',
+    '""',
+    "'",
+    "\r",
+    "\n",
+    "\r\n",
+    "\x85",
+    "\u2028",
+    "\t",
+    ";" * 30,
+    "," * 300,
+    "-",
+    "=cmd()|x",
+    "../../etc/passwd",
+    "9" * 400,
+    "9" * 5000,
+    "-1",
+    "1e999",
+    "nan",
+    "inf",
+    "1e-400",
+    "٣",
+    "²",
+    "é" * 500,
+    "%s%n{0}{}",
+    "${7*7}",
+    "None",
+    "true",
+    "0x1F",
+    "1_000",
+    "a\u0301",
+    "ﬁ",
+    "İ",
+    "ß",
+    "\\",
+    "\\u0000",
+    "\\ud800",
+)
 TABLE = (
-    "student", "student,student", "exercise", "seed", "part", "answer", "points", "reason", "lang", "Question 1", "Response 1",
-    "Réponse 1", "Seed: 1; ans1: ", "ans1: [1] [score]; ", "part 1: ", "partie 2 : ", "; part 3: ", "Grade/9.00", "Name", "id", "attempt",
-    "12345: x", "Email address", "Adresse de courriel", "First name", "Prénom", "SIS User ID", "Student, Test", "Points Possible",
-    "Overall average", "|123", "[Total Pts: 5]", " (Real)", "1700000000", "coordinate", "seen",
-)  # fmt: skip
+    "student",
+    "student,student",
+    "exercise",
+    "seed",
+    "part",
+    "answer",
+    "points",
+    "reason",
+    "lang",
+    "Question 1",
+    "Response 1",
+    "Réponse 1",
+    "Seed: 1; ans1: ",
+    "ans1: [1] [score]; ",
+    "part 1: ",
+    "partie 2 : ",
+    "; part 3: ",
+    "Grade/9.00",
+    "Name",
+    "id",
+    "attempt",
+    "12345: x",
+    "Email address",
+    "Adresse de courriel",
+    "First name",
+    "Prénom",
+    "SIS User ID",
+    "Student, Test",
+    "Points Possible",
+    "Overall average",
+    "|123",
+    "[Total Pts: 5]",
+    " (Real)",
+    "1700000000",
+    "coordinate",
+    "seen",
+)
 JSON = (
     "null",
     "{}",
@@ -48,25 +122,96 @@ JSON = (
     '"\\ud83d"',
 )
 PYTHON = (
-    "answers = {", "}", "#", "# mm", '"rA": ', "**{}", "(" * 300, "[" * 300, "-" * 3000, "1+" * 3000, "lambda: 1", "f'{1}'", "b'x'", "1j",
-    "'''", '"""', "\\n", "\\\\", "__import__('os')", "{'a': {}}", "9" * 5000, "# four_bar_motion 3", "0xFF", "...", "student",
-)  # fmt: skip
+    "answers = {",
+    "}",
+    "#",
+    "# mm",
+    '"rA": ',
+    "**{}",
+    "(" * 300,
+    "[" * 300,
+    "-" * 3000,
+    "1+" * 3000,
+    "lambda: 1",
+    "f'{1}'",
+    "b'x'",
+    "1j",
+    "'''",
+    '"""',
+    "\\n",
+    "\\\\",
+    "__import__('os')",
+    "{'a': {}}",
+    "9" * 5000,
+    "# four_bar_motion 3",
+    "0xFF",
+    "...",
+    "student",
+)
 XML = (
-    "<!DOCTYPE a [<!ENTITY b 'c'>]>", "&b;", "&#0;", "&#xD800;", "<![CDATA[", "]]>", "<value>", "</value>", "<a>" * 3000, "xmlns='x'",
-    '<?xml version="1.0" encoding="utf-7"?>', '<?xml version="1.0" encoding="rot13"?>', "<!--", "candidateResponse", "qti-item-result",
-)  # fmt: skip
+    "<!DOCTYPE a [<!ENTITY b 'c'>]>",
+    "&b;",
+    "&#0;",
+    "&#xD800;",
+    "<![CDATA[",
+    "]]>",
+    "<value>",
+    "</value>",
+    "<a>" * 3000,
+    "xmlns='x'",
+    '<?xml version="1.0" encoding="utf-7"?>',
+    '<?xml version="1.0" encoding="rot13"?>',
+    "<!--",
+    "candidateResponse",
+    "qti-item-result",
+)
 TOML = (
-    "[", "]", "[[", "]]", "=", "{", "}", "[mark]", "[[exercises]]", "[service]", "[[platforms]]", "title", "name", "seed", "versions", "= 1",
-    "= -1", "= 1e400", "= nan", "= inf", "= true", "= []", "= {}", "= ''", '= "x"', "= 1979-05-27", "= [[1], ['a']]", "a.b.c.d = 1",
-    "= " + "[" * 3000, "= 9" + "9" * 400, "= 0xFFFFFFFFFFFFFFFFFFFF", '= "\\u0000"', "= 07:32:00", "'''", "steps", "loads", "marking",
-)  # fmt: skip
+    "[",
+    "]",
+    "[[",
+    "]]",
+    "=",
+    "{",
+    "}",
+    "[mark]",
+    "[[exercises]]",
+    "[service]",
+    "[[platforms]]",
+    "title",
+    "name",
+    "seed",
+    "versions",
+    "= 1",
+    "= -1",
+    "= 1e400",
+    "= nan",
+    "= inf",
+    "= true",
+    "= []",
+    "= {}",
+    "= ''",
+    '= "x"',
+    "= 1979-05-27",
+    "= [[1], ['a']]",
+    "a.b.c.d = 1",
+    "= " + "[" * 3000,
+    "= 9" + "9" * 400,
+    "= 0xFFFFFFFFFFFFFFFFFFFF",
+    '= "\\u0000"',
+    "= 07:32:00",
+    "'''",
+    "steps",
+    "loads",
+    "marking",
+)
 
 
 # ----------------------------------------------------------------------- damage
 
 
 def with_words(generator: random.Random, data: bytes, words: tuple[str, ...]) -> bytes:
-    """A text with words of its format, or of no format, put in or in the place of others, lines doubled, gone or many."""
+    """A text with words of its format, or of no format, put in or in the place of others, lines doubled, gone
+    or many."""
     text = data.decode("utf-8", "replace")
     for _ in range(generator.choice((1, 1, 2, 3, 8))):
         place, word = generator.randrange(len(text) + 1), generator.choice(words + COMMON)
@@ -91,16 +236,70 @@ def with_words(generator: random.Random, data: bytes, words: tuple[str, ...]) ->
 
 
 VALUES = (
-    "1", "-1", "0", "2.5", "1e308", "-0.0", "nan", "inf", "-inf", "true", '""', '" "', '"x"', "'\\x00'", '"\\u0000"', '"a\\nb"', '"é"', "[]", "{}",
-    "[[]]", '["x"]', '["x", "x"]', "[1]", "{x = 1}", '{fr = "x"}', '{en = 1}', "[{}]", "1979-05-27", "07:32:00", "1979-05-27T07:32:00Z",
-    "9" * 30, "0x" + "F" * 80, "1e-320", '"' + "9" * 5000 + '"', '"' + "(" * 5000 + '"', '"1e999 kg"', '"nan kg"', '"0 kg"', '"-1 mm"',
-    '"1 kg/s^9"', "[" * 60 + "]" * 60, '"../../x"', '"/etc/passwd"', '"="', '"four_bar_motion"', '"https://["', '"https://x:99999/"', '"http://x"',
-    '"javascript:x"', '["1", 2]', '"\\ud7ff\\ue000"', '"\\u202e"', "99999999999999999999", "1000000", "26", "27", "[1, [2]]", '{name = "x"}',
-)  # fmt: skip
+    "1",
+    "-1",
+    "0",
+    "2.5",
+    "1e308",
+    "-0.0",
+    "nan",
+    "inf",
+    "-inf",
+    "true",
+    '""',
+    '" "',
+    '"x"',
+    "'\\x00'",
+    '"\\u0000"',
+    '"a\\nb"',
+    '"é"',
+    "[]",
+    "{}",
+    "[[]]",
+    '["x"]',
+    '["x", "x"]',
+    "[1]",
+    "{x = 1}",
+    '{fr = "x"}',
+    "{en = 1}",
+    "[{}]",
+    "1979-05-27",
+    "07:32:00",
+    "1979-05-27T07:32:00Z",
+    "9" * 30,
+    "0x" + "F" * 80,
+    "1e-320",
+    '"' + "9" * 5000 + '"',
+    '"' + "(" * 5000 + '"',
+    '"1e999 kg"',
+    '"nan kg"',
+    '"0 kg"',
+    '"-1 mm"',
+    '"1 kg/s^9"',
+    "[" * 60 + "]" * 60,
+    '"../../x"',
+    '"/etc/passwd"',
+    '"="',
+    '"four_bar_motion"',
+    '"https://["',
+    '"https://x:99999/"',
+    '"http://x"',
+    '"javascript:x"',
+    '["1", 2]',
+    '"\\ud7ff\\ue000"',
+    '"\\u202e"',
+    "99999999999999999999",
+    "1000000",
+    "26",
+    "27",
+    "[1, [2]]",
+    '{name = "x"}',
+)
 
 
 def damaged_toml(generator: random.Random, text: str) -> bytes:
-    """A TOML that is one still, mostly: values and keys exchanged, lines and tables gone, doubled or elsewhere."""
+    """A TOML that is one still, mostly: values and keys exchanged, lines and tables gone, doubled or
+    elsewhere."""
     lines = text.splitlines()
     for _ in range(generator.choice((1, 1, 1, 2, 4))):
         place = generator.randrange(len(lines))
@@ -208,9 +407,15 @@ def _texts(told: Any) -> Iterator[str]:
 def _notebook(*sources: str, **about: Any) -> bytes:
     cells = [{"cell_type": "markdown", "metadata": {}, "source": "**Name:** Ana\n\nfour_bar_motion · 3 · v1"}]
     cells += [
-        {"cell_type": "code", "metadata": {"tags": ["answers"]}, "source": source.splitlines(True), "outputs": [], "execution_count": None}
+        {
+            "cell_type": "code",
+            "metadata": {"tags": ["answers"]},
+            "source": source.splitlines(True),
+            "outputs": [],
+            "execution_count": None,
+        }
         for source in sources
-    ]  # fmt: skip
+    ]
     return json.dumps(
         {"cells": cells, "metadata": {"coursework": about}, "nbformat": 4, "nbformat_minor": 5}
     ).encode()
@@ -233,22 +438,56 @@ SHEETS = json.dumps(
     ]
 ).encode()
 NOTEBOOKS = (
-    _notebook('answers = {\n    "student": "Ana",\n    "rA": "319.8 mm",\n    "n": 2,  # whole\n    "v": (1.5, 2),\n}\n', exercise="four_bar_motion", seed=3),
-    _notebook('answers = {  # coil 3\n    "Z": "3+4i",\n}\n', 'answers = {  # gear 4\n    "i": -2.5,\n}\n',
-              student="Ana", sheets=[{"exercise": "coil", "seed": 3}, {"exercise": "gear", "seed": 4}]),
+    _notebook(
+        'answers = {\n    "student": "Ana",\n    "rA": "319.8 mm",\n    "n": 2,  # whole\n    "v": '
+        "(1.5, 2),\n}\n",
+        exercise="four_bar_motion",
+        seed=3,
+    ),
+    _notebook(
+        'answers = {  # coil 3\n    "Z": "3+4i",\n}\n',
+        'answers = {  # gear 4\n    "i": -2.5,\n}\n',
+        student="Ana",
+        sheets=[{"exercise": "coil", "seed": 3}, {"exercise": "gear", "seed": 4}],
+    ),
     _notebook('answers = {\n    "rA": "319.8 mm",\n', '    "b": 2,\n}\nprint(answers)\n'),
-)  # fmt: skip
+)
 ROSTERS = (
     b'student,number,lang,group\nAna,7,fr,A\nBen,8,en,B\n"Lef\xc3\xa8vre, C\xc3\xa9lo",9,,A\n',
     b"Nom;Pr\xe9nom;Adresse de courriel\nLef\xe8vre;Ana;a@x.org\nO'Neil;Ben;b@x.org\n",
 )
 ACCEPTED = b'student,exercise,seed,part,points,reason\nAna,coil,3,Z,1,good\nBen,coil,,I,"0,5","a, b"\n'
-TYPED = b"student,exercise,seed,part,coordinate,answer,seen\nAna,coil,3,Z,1,3+4i,abc-0001 abc-0002\nK7,(name),,,,Ben,\n"
-PAGE = json.dumps({
-    "format": 1, "what": "answers", "reason": "", "code": "K7", "number": 1, "is_straight": True, "has_picture": False, "least": 0.9,
-    "fields": [{"exercise": "coil", "seed": 3, "part": "Z", "coordinate": 0, "coordinates": 1, "what": "number", "text": "3", "confidence": 0.99,
-                "waits": "", "crop": "", "box": [10, 10, 50, 8]}],
-}).encode()  # fmt: skip
+TYPED = (
+    b"student,exercise,seed,part,coordinate,answer,seen\nAna,coil,3,Z,1,3+4i,abc-0001 abc-0002\n"
+    b"K7,(name),,,,Ben,\n"
+)
+PAGE = json.dumps(
+    {
+        "format": 1,
+        "what": "answers",
+        "reason": "",
+        "code": "K7",
+        "number": 1,
+        "is_straight": True,
+        "has_picture": False,
+        "least": 0.9,
+        "fields": [
+            {
+                "exercise": "coil",
+                "seed": 3,
+                "part": "Z",
+                "coordinate": 0,
+                "coordinates": 1,
+                "what": "number",
+                "text": "3",
+                "confidence": 0.99,
+                "waits": "",
+                "crop": "",
+                "box": [10, 10, 50, 8],
+            }
+        ],
+    }
+).encode()
 FILES = json.dumps([{"name": "a.pdf", "digest": "0123456789abcdef", "pages": 2, "fault": ""}]).encode()
 ASSIGNMENT = b"""title = { fr = "Devoir 2", en = "Midterm 2" }
 course = "Mechanics"
@@ -333,12 +572,37 @@ install = "coursework==1.0"
 [feedback]
 practice = true
 """
-PROGRESS = json.dumps({
-    "format": "coursework progress", "version": 1,
-    "entries": [{"at": "2026-01-01T00:00:00.000000Z", "exercise": "coil", "seed": 3, "part": "Z", "what": "answer", "answer": "3", "verdict": "wrong"}],
-}).encode()  # fmt: skip
-METADATA = json.dumps({"users": [{"name": "Ana", "email": "a@x.org", "sid": "7", "assignment": {"due_date": "2026-01-01T00:00:00Z"}}],
-                       "created_at": "2026-01-02T00:00:00.000000-08:00", "assignment": {"due_date": "2026-01-01T00:00:00Z"}}).encode()  # fmt: skip
+PROGRESS = json.dumps(
+    {
+        "format": "coursework progress",
+        "version": 1,
+        "entries": [
+            {
+                "at": "2026-01-01T00:00:00.000000Z",
+                "exercise": "coil",
+                "seed": 3,
+                "part": "Z",
+                "what": "answer",
+                "answer": "3",
+                "verdict": "wrong",
+            }
+        ],
+    }
+).encode()
+METADATA = json.dumps(
+    {
+        "users": [
+            {
+                "name": "Ana",
+                "email": "a@x.org",
+                "sid": "7",
+                "assignment": {"due_date": "2026-01-01T00:00:00Z"},
+            }
+        ],
+        "created_at": "2026-01-02T00:00:00.000000-08:00",
+        "assignment": {"due_date": "2026-01-01T00:00:00Z"},
+    }
+).encode()
 MARKS = b"""student,exercise,seed,part,answer,verdict,points,out_of,feedback
 Ana,coil,3,Z,3+4i,correct,2,2,
 Ana,coil,3,I,1,wrong,0,2,no
@@ -498,12 +762,19 @@ READERS = {
     "answers, TSV": Reader(".csv", tuple(one.replace(b",", b"\t") for one in ANSWERS), _tsv, TABLE),
     "answers, JSON": Reader(".json", (SHEETS,), _checked_rows, JSON),
     "answers, notebook": Reader(".ipynb", NOTEBOOKS, _checked_rows, PYTHON + JSON),
-    "answers, Moodle": Reader(".csv", recorded("moodle_responses.csv", "moodle_responses_fr.csv"), _checked_rows, TABLE),
+    "answers, Moodle": Reader(
+        ".csv", recorded("moodle_responses.csv", "moodle_responses_fr.csv"), _checked_rows, TABLE
+    ),
     "answers, Moodle's JSON": Reader(".json", recorded("moodle_responses.json"), _checked_rows, JSON + TABLE),
     "answers, Canvas": Reader(".csv", recorded("canvas_analysis.csv"), _checked_rows, TABLE),
     "answers, QTI": Reader(".xml", recorded("qti_result.xml"), _checked_rows, XML),
     "answers, Parquet": Reader(".parquet", (), _checked_rows),
-    "roster": Reader(".csv", ROSTERS + recorded("moodle_participants.csv", "canvas_gradebook.csv", "sakai_gradebook.csv"), _roster, TABLE),
+    "roster": Reader(
+        ".csv",
+        ROSTERS + recorded("moodle_participants.csv", "canvas_gradebook.csv", "sakai_gradebook.csv"),
+        _roster,
+        TABLE,
+    ),
     "accepted": Reader(".csv", (ACCEPTED,), _accepted, TABLE),
     "typed": Reader(".csv", (TYPED,), _typed, TABLE, "typed"),
     "page of a scan": Reader(".json", (PAGE,), _page, JSON),
@@ -515,8 +786,18 @@ READERS = {
     "progress": Reader(".json", (PROGRESS,), _progress, JSON, "progress"),
     "marks": Reader(".csv", (MARKS,), _marks, TABLE, "marks"),
     **{
-        f"gradebook, {name}": Reader(".csv", recorded(*(p.name for p in sorted(RECORDED.glob(f"{name}_gradebook*.*")))), _gradebook(name, item), TABLE)
-        for name, item in (("moodle", "Week 3"), ("canvas", "Quiz 1"), ("blackboard", "Week 3"), ("sakai", "Quiz"))
+        f"gradebook, {name}": Reader(
+            ".csv",
+            recorded(*(p.name for p in sorted(RECORDED.glob(f"{name}_gradebook*.*")))),
+            _gradebook(name, item),
+            TABLE,
+        )
+        for name, item in (
+            ("moodle", "Week 3"),
+            ("canvas", "Quiz 1"),
+            ("blackboard", "Week 3"),
+            ("sakai", "Quiz"),
+        )
     },
     "archive": Reader(".zip", (zipped(),), _archive),
-}  # fmt: skip
+}

@@ -36,7 +36,8 @@ def distance(variant: Variant, part: Part, value: Any) -> float:
 
 
 def is_right(variant: Variant, part: Part, reading: Reading) -> bool:
-    """Whether any honest reading of an answer is right; one of a judge's, where it is that of the key within 1 %."""
+    """Whether any honest reading of an answer is right; one of a judge's, where it is that of the key within
+    1 %."""
     return reading.status == "read" and any(distance(variant, part, value) <= 1 for value in reading.values)
 
 
@@ -101,7 +102,8 @@ def _angles(value: float, digits: str, turns: bool) -> Iterator[str]:
     yield from (f"{value + 360:.4f}", f"{value - 360:.4f}") if turns else ()
     whole, rest = divmod(abs(value), 1)
     minutes, seconds = divmod(rest * 3600, 60)
-    yield f"{'-' if value < 0 else ''}{int(whole)}\u00b0{int(minutes)}'{math.floor(100 * seconds) / 100:.2f}\""
+    sign = "-" if value < 0 else ""
+    yield f"{sign}{int(whole)}\u00b0{int(minutes)}'{math.floor(100 * seconds) / 100:.2f}\""
     for start, name in ((180.0, "arctan"), (90.0, "atan"), (360.0, "Arctan"), (0.0, "arctan")):
         left = math.radians(turn - start)
         if abs(left) < 1.5:
@@ -215,32 +217,180 @@ def right_spellings(variant: Variant, part: Part, rng: random.Random) -> Iterato
 
 #: Two answers, ``a`` and ``b``, together in one box; ``u`` is the unit.
 FORMS = (
-    "{a} [{b}]", "({a}) ({b})", "({a})({b})", "[{a}] [{b}]", "{a} ({b})", "({a}) {b}", "{a}({b})", "{a}[{b}]", "{{{a}}} {{{b}}}",
-    "{a}:{b}", "{a} : {b}", "{a}* {b}", "{a} * {b}", "{a}*{b}", "{a} / {b}", "{a}/{b}", "{a} // {b}", "{a} × {b}", "{a} x {b}",
-    "{a} or {b}", "{a} ou {b}", "{a} and {b}", "{a} et {b}", "{a} or else {b}", "{a} sinon {b}", "{a} vs {b}",
-    "{a} -> {b}", "{a} → {b}", "{a} => {b}", "{a} ; {b}", "{a};{b}", "{a}\n{b}", "{a}\r\n\r\n{b}", "{a}\t{b}", "{a}, {b}", "{a},{b}",
-    "{a} {b}", "{a}  {b}", "{a} . {b}", "{a} - {b}", "{a} – {b}", "{a} — {b}", "{a} + {b}", "{a}^{b}", "{a} | {b}", "{a} || {b}",
-    "{a} = {b}", "{a} == {b}", "{a} = {b} = {a}", "x = {a} = {b}", "{a} ≈ {b}", "{a} ~ {b}", "~{a} {b}", "{a} ≠ {b}", "{a} != {b}",
-    "{a} (not {b})", "{a} not {b}", "not {b}, {a}", "not {b}: {a}", "{a} (non {b})", "{a} et non {b}", "pas {b} : {a}", "x = {a} (not x = {b})",
-    "x = {a} x = {b}", "x = {a}, x = {b}", "x={a};x={b}", "x or {b} = {a}", "{b} or x = {a}", "no, {b} = {a}",
-    "[{a}, {b}]", "[{a} ; {b}]", "{{{a}, {b}}}", "({a}, {b})", "({a} ; {b})", "<{a}|{b}>",
-    r"{a} \text{{ or }} {b}", r"\text{{{a}}} {b}", r"{a} \quad {b}", r"{a} \\ {b}", r"${a}$ ${b}$", r"\frac{{{a}}}{{{b}}}", r"{a} \lor {b}",
-    "<b>{a}</b> {b}", "{a}<br>{b}", "{a}&nbsp;{b}", "{a} &lt; {b}", "<s>{a}</s> {b}", "{a} <!-- {b} -->", "{a}&#10;{b}",
-    "~~{a}~~ {b}", "~~{a}~~{b}", "{a}\u0336 {b}", "{a}…{b}", "{a} … {b}", "{a}... {b}", "{a} ± {b}", "{a} +/- {b}", "{a} ? {b}", "{a}? {b}?",
-    "{a} I mean {b}", "{a}, I mean {b}", "{a} je veux dire {b}", "{a} no {b}", "{a} maybe {b}", "{a} # {b}", "{a} & {b}", "{a} % {b}",
-    "1) {a} 2) {b}", "1. {a} 2. {b}", "a) {a} b) {b}", "1) {a}\n2) {b}", "- {a}\n- {b}", "{a} u {b}", "{a} {u} {b} {u}", "{a} {u} ({b} {u})",
-    "{a} {u} or {b} {u}", "{a} {u} / {b} {u}", "{a} {u} = {b} {u}", "{a} {u} ; {b}", "{a} {u}, {b} {u}", "{a} ({b} {u})", "min({a}, {b})",
-    "'{a}' '{b}'", '"{a}" "{b}"', "'{a}' {b}", "«{a}» {b}", "array([{a}, {b}])", "np.float64({a}) {b}", "{a} {b} !", "{a}\u200b {b}", "{a}\u00a0{b}",
-    "abs({a}) ({b})", "{a}{{}}{b}", "{a} ddl {b} ddl", "{a} dof ({b})", "{b} instead of {a}", "{a} rather than {b}", "{a} plutôt que {b}",
-    "{a} 0 + {b}", "{a} + 0*{b}", "{a} - 0 {b}", "{a}!{b}", "{a}'{b}", "{a}_{b}", "{a}\\,{b}", "{a}\\;{b}", "({a} ({b}))", "(({a}) {b})",
-)  # fmt: skip
+    "{a} [{b}]",
+    "({a}) ({b})",
+    "({a})({b})",
+    "[{a}] [{b}]",
+    "{a} ({b})",
+    "({a}) {b}",
+    "{a}({b})",
+    "{a}[{b}]",
+    "{{{a}}} {{{b}}}",
+    "{a}:{b}",
+    "{a} : {b}",
+    "{a}* {b}",
+    "{a} * {b}",
+    "{a}*{b}",
+    "{a} / {b}",
+    "{a}/{b}",
+    "{a} // {b}",
+    "{a} × {b}",
+    "{a} x {b}",
+    "{a} or {b}",
+    "{a} ou {b}",
+    "{a} and {b}",
+    "{a} et {b}",
+    "{a} or else {b}",
+    "{a} sinon {b}",
+    "{a} vs {b}",
+    "{a} -> {b}",
+    "{a} → {b}",
+    "{a} => {b}",
+    "{a} ; {b}",
+    "{a};{b}",
+    "{a}\n{b}",
+    "{a}\r\n\r\n{b}",
+    "{a}\t{b}",
+    "{a}, {b}",
+    "{a},{b}",
+    "{a} {b}",
+    "{a}  {b}",
+    "{a} . {b}",
+    "{a} - {b}",
+    "{a} – {b}",
+    "{a} — {b}",
+    "{a} + {b}",
+    "{a}^{b}",
+    "{a} | {b}",
+    "{a} || {b}",
+    "{a} = {b}",
+    "{a} == {b}",
+    "{a} = {b} = {a}",
+    "x = {a} = {b}",
+    "{a} ≈ {b}",
+    "{a} ~ {b}",
+    "~{a} {b}",
+    "{a} ≠ {b}",
+    "{a} != {b}",
+    "{a} (not {b})",
+    "{a} not {b}",
+    "not {b}, {a}",
+    "not {b}: {a}",
+    "{a} (non {b})",
+    "{a} et non {b}",
+    "pas {b} : {a}",
+    "x = {a} (not x = {b})",
+    "x = {a} x = {b}",
+    "x = {a}, x = {b}",
+    "x={a};x={b}",
+    "x or {b} = {a}",
+    "{b} or x = {a}",
+    "no, {b} = {a}",
+    "[{a}, {b}]",
+    "[{a} ; {b}]",
+    "{{{a}, {b}}}",
+    "({a}, {b})",
+    "({a} ; {b})",
+    "<{a}|{b}>",
+    r"{a} \text{{ or }} {b}",
+    r"\text{{{a}}} {b}",
+    r"{a} \quad {b}",
+    r"{a} \\ {b}",
+    r"${a}$ ${b}$",
+    r"\frac{{{a}}}{{{b}}}",
+    r"{a} \lor {b}",
+    "<b>{a}</b> {b}",
+    "{a}<br>{b}",
+    "{a}&nbsp;{b}",
+    "{a} &lt; {b}",
+    "<s>{a}</s> {b}",
+    "{a} <!-- {b} -->",
+    "{a}&#10;{b}",
+    "~~{a}~~ {b}",
+    "~~{a}~~{b}",
+    "{a}\u0336 {b}",
+    "{a}…{b}",
+    "{a} … {b}",
+    "{a}... {b}",
+    "{a} ± {b}",
+    "{a} +/- {b}",
+    "{a} ? {b}",
+    "{a}? {b}?",
+    "{a} I mean {b}",
+    "{a}, I mean {b}",
+    "{a} je veux dire {b}",
+    "{a} no {b}",
+    "{a} maybe {b}",
+    "{a} # {b}",
+    "{a} & {b}",
+    "{a} % {b}",
+    "1) {a} 2) {b}",
+    "1. {a} 2. {b}",
+    "a) {a} b) {b}",
+    "1) {a}\n2) {b}",
+    "- {a}\n- {b}",
+    "{a} u {b}",
+    "{a} {u} {b} {u}",
+    "{a} {u} ({b} {u})",
+    "{a} {u} or {b} {u}",
+    "{a} {u} / {b} {u}",
+    "{a} {u} = {b} {u}",
+    "{a} {u} ; {b}",
+    "{a} {u}, {b} {u}",
+    "{a} ({b} {u})",
+    "min({a}, {b})",
+    "'{a}' '{b}'",
+    '"{a}" "{b}"',
+    "'{a}' {b}",
+    "«{a}» {b}",
+    "array([{a}, {b}])",
+    "np.float64({a}) {b}",
+    "{a} {b} !",
+    "{a}\u200b {b}",
+    "{a}\u00a0{b}",
+    "abs({a}) ({b})",
+    "{a}{{}}{b}",
+    "{a} ddl {b} ddl",
+    "{a} dof ({b})",
+    "{b} instead of {a}",
+    "{a} rather than {b}",
+    "{a} plutôt que {b}",
+    "{a} 0 + {b}",
+    "{a} + 0*{b}",
+    "{a} - 0 {b}",
+    "{a}!{b}",
+    "{a}'{b}",
+    "{a}_{b}",
+    "{a}\\,{b}",
+    "{a}\\;{b}",
+    "({a} ({b}))",
+    "(({a}) {b})",
+)
 
 #: Forms that are a formula, worth one value, where it does something with both numbers.
 FORMULAS = (
-    "{a} + {b}", "{a} - {b}", "{a} – {b}", "{a} — {b}", "{a}*{b}", "{a} * {b}", "{a}* {b}", "{a} × {b}", "{a} x {b}", "{a}^{b}",
-    "{a} / {b}", "{a}/{b}", "{a} {u} / {b} {u}", r"\frac{{{a}}}{{{b}}}", "{a}:{b}", "{a} : {b}", "{a} - 0 {b}", "abs({a}) ({b})",
-    "({a}) {b}", "(({a}) {b})", "{a} {u} {b} {u}",
-)  # fmt: skip
+    "{a} + {b}",
+    "{a} - {b}",
+    "{a} – {b}",
+    "{a} — {b}",
+    "{a}*{b}",
+    "{a} * {b}",
+    "{a}* {b}",
+    "{a} × {b}",
+    "{a} x {b}",
+    "{a}^{b}",
+    "{a} / {b}",
+    "{a}/{b}",
+    "{a} {u} / {b} {u}",
+    r"\frac{{{a}}}{{{b}}}",
+    "{a}:{b}",
+    "{a} : {b}",
+    "{a} - 0 {b}",
+    "abs({a}) ({b})",
+    "({a}) {b}",
+    "(({a}) {b})",
+    "{a} {u} {b} {u}",
+)
 
 
 class Both(NamedTuple):
@@ -256,8 +406,9 @@ _IN_DIGITS = re.compile(r"-?[0-9]+(?:[.,][0-9]+)?")
 
 
 def holds_two(part: Part, both: Both, reading: Reading) -> bool:
-    """Whether a text that was read says two values: a formula that does something with its numbers says one, and so do a ratio
-    to 1, whole numbers with a comma between them, and a measured number with its margin or with 0 added."""
+    """Whether a text that was read says two values: a formula that does something with its numbers says one,
+    and so do a ratio to 1, whole numbers with a comma between them, and a measured number with its margin or
+    with 0 added."""
     if part.sort.is_number and re.search(r"±|\+/-", both.text):
         numbers = [
             abs(float(said.replace(",", ".")))
@@ -284,7 +435,8 @@ def holds_two(part: Part, both: Both, reading: Reading) -> bool:
 
 
 def _wrong_values(variant: Variant, part: Part) -> list[Any]:
-    """Values that are surely wrong: of a count its neighbours and what leaves a product as it is, another case, another place."""
+    """Values that are surely wrong: of a count its neighbours and what leaves a product as it is, another
+    case, another place."""
     sort, value = part.sort, variant.key.reference[part.quantity]
     if sort.name == "choice":
         return [case for case in part.choices if case != str(value)]

@@ -1,4 +1,5 @@
-"""Texts that would do something where they are shown: run in a page, load from another host, be a formula, be compiled."""
+"""Texts that would do something where they are shown: run in a page, load from another host, be a formula, be
+compiled."""
 
 HOST = "evil.example"  #: where each that loads something loads it from
 
@@ -34,15 +35,15 @@ _RUN = (
     "<form><button formaction='javascript:alert(1)'>x</button></form>",
     "<a href='javascript:alert(1)' autofocus>x</a>",
     "[x](javascript:alert(1))",
-    "![x](x \"onerror=alert(1)\")",
+    '![x](x "onerror=alert(1)")',
     "<javascript:alert(1)>",
     "[x](data:text/html;base64,PHNjcmlwdD5hbGVydCgxKTwvc2NyaXB0Pg==)",
-    "[Hint](#hint-x\" onmouseover=alert(1) x=\")",
-    "\" autofocus onfocus=alert(1) x=\"",
+    '[Hint](#hint-x" onmouseover=alert(1) x=")',
+    '" autofocus onfocus=alert(1) x="',
     "' autofocus onfocus=alert(1) x='",
-    "\"><script>alert(1)</script>",
+    '"><script>alert(1)</script>',
     "'><script>alert(1)</script>",
-    "\\\"><script>alert(1)</script>",
+    '\\"><script>alert(1)</script>',
     "`${alert(1)}`",
     "{{alert(1)}}",
     "{{ self.__init__.__globals__ }}{% raw %}",
@@ -59,9 +60,9 @@ _RUN = (
     "<div hx-on:load=alert(1) data-hx-on:load=alert(1)>",
     "<div hx-get=/account hx-trigger=load>",
     "<template><script>alert(1)</script></template>",
-    "<noscript><p title=\"</noscript><img src=x onerror=alert(1)>\">",
+    '<noscript><p title="</noscript><img src=x onerror=alert(1)>">',
     "<xss style='animation-name:x' onanimationstart=alert(1)></xss><style>@keyframes x{}</style>",
-)  # fmt: skip
+)
 _LOAD = (
     f"<img src=//{HOST}/x>",
     f"<img srcset='//{HOST}/x 1x'>",

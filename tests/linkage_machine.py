@@ -1,5 +1,6 @@
-"""Mechanisms of files without any formula of the package: three coordinates a body, joints closed by Newton's method from a pose that
-is off, and the multiplier of what drives. Of the package it takes what the file's entries say, and a pose to begin near."""
+"""Mechanisms of files without any formula of the package: three coordinates a body, joints closed by Newton's
+method from a pose that is off, and the multiplier of what drives. Of the package it takes what the file's
+entries say, and a pose to begin near."""
 
 import numpy as np
 
@@ -39,7 +40,8 @@ class Machine:
         return origin + self.local[body, point] * np.exp(1j * turn)
 
     def gaps(self, q, start):
-        """What is 0 where the joints hold, and last what the drive sets; ``start`` of angles that a slide keeps apart."""
+        """What is 0 where the joints hold, and last what the drive sets; ``start`` of angles that a slide
+        keeps apart."""
         linkage, found = self.linkage, []
         holders = {}
         for body, point in self.local:
@@ -84,7 +86,8 @@ class Machine:
         return self.number(place.x) + 1j * self.number(place.y)
 
     def slopes(self, function, q):
-        """The derivatives of a function, by steps into the complex numbers' place: central differences of a small step."""
+        """The derivatives of a function, by steps into the complex numbers' place: central differences of a
+        small step."""
         steps = 1e-4 * np.where(np.arange(len(q)) % 3 == 2, 0.01, 1.0)
         return np.stack(
             [
@@ -113,7 +116,8 @@ class Machine:
         return q
 
     def effort(self, start, powers, off=1.0):
-        """The pose near one, and the multiplier of what drives: N mm of an angle, N of a length. ``powers``: the loads' work."""
+        """The pose near one, and the multiplier of what drives: N mm of an angle, N of a length. ``powers``:
+        the loads' work."""
         q, kept = self.settled(start, off), start
         slopes = self.slopes(lambda z: self.gaps(z, kept), q)
         return q, -np.linalg.solve(slopes.T, self.slopes(lambda z: np.array([powers(z)]), q)[0])[-1]

@@ -1,4 +1,5 @@
-"""A platform of one's own: it signs launches, gives keys and tokens, and takes scores, all within the test."""
+"""A platform of one's own: it signs launches, gives keys and tokens, and takes scores, all within the
+test."""
 
 from __future__ import annotations
 
@@ -140,14 +141,29 @@ class FakePlatform:
         """Those of a student's launch; a claim that is None is left out."""
         now = int(time.time())
         told = {
-            "iss": SITE, "aud": CLIENT, "sub": "ada", "iat": now, "exp": now + 300, "nonce": nonce, "name": "Ada Byron",
-            f"{LTI}message_type": "LtiResourceLinkRequest", f"{LTI}version": "1.3.0", f"{LTI}deployment_id": DEPLOYMENT,
-            f"{LTI}target_link_uri": f"{TOOL}/lti/launch", f"{LTI}roles": STUDENT, f"{LTI}resource_link": {"id": "link-1", "title": "Week 3"},
-            f"{LTI}context": {"id": "course-1", "title": "Mechanics"}, f"{LTI}launch_presentation": {"locale": "en_GB"},
+            "iss": SITE,
+            "aud": CLIENT,
+            "sub": "ada",
+            "iat": now,
+            "exp": now + 300,
+            "nonce": nonce,
+            "name": "Ada Byron",
+            f"{LTI}message_type": "LtiResourceLinkRequest",
+            f"{LTI}version": "1.3.0",
+            f"{LTI}deployment_id": DEPLOYMENT,
+            f"{LTI}target_link_uri": f"{TOOL}/lti/launch",
+            f"{LTI}roles": STUDENT,
+            f"{LTI}resource_link": {"id": "link-1", "title": "Week 3"},
+            f"{LTI}context": {"id": "course-1", "title": "Mechanics"},
+            f"{LTI}launch_presentation": {"locale": "en_GB"},
             f"{LTI}custom": {"exercise": "slotted_mechanism"},
-            f"{AGS}claim/endpoint": {"scope": SCOPES, "lineitem": f"{SITE}/lines/9?of=7", "lineitems": f"{SITE}/lines"},
+            f"{AGS}claim/endpoint": {
+                "scope": SCOPES,
+                "lineitem": f"{SITE}/lines/9?of=7",
+                "lineitems": f"{SITE}/lines",
+            },
             NRPS: {"context_memberships_url": f"{SITE}/members", "service_versions": ["2.0"]},
-        }  # fmt: skip
+        }
         named = {
             name if ":" in name or name in (*told, "email") else f"{LTI}{name}": value
             for name, value in changed.items()
@@ -182,7 +198,8 @@ class Visitor:
         }
 
     def told(self, sign=None, **changed):
-        """What the browser brings back from the platform after a login; ``sign`` makes the token of the claims."""
+        """What the browser brings back from the platform after a login; ``sign`` makes the token of the
+        claims."""
         asked = self.login()
         token = (sign or self.platform.signed)(self.platform.claims(asked["nonce"], **changed))
         return {"state": asked["state"], "id_token": token}

@@ -16,18 +16,73 @@ class Written:
 
 
 ODD_VALUES = (
-    None, True, False, [], {}, "", " ", "x\0y", "\ud800", "\x1b[31m", "../../x", "=1+1", 0, -1, 1.5, 10**30, 1e308, "NaN", "1e400",
-    [[]], {"": None}, {"id": None}, "é" * 3000, Written("NaN"), Written("1e999"), Written("-Infinity"),
-    Written("9" * 5000), Written("[" * 3000 + "]" * 3000), Written('{"a":' * 3000 + "1" + "}" * 3000),
-)  # fmt: skip
+    None,
+    True,
+    False,
+    [],
+    {},
+    "",
+    " ",
+    "x\0y",
+    "\ud800",
+    "\x1b[31m",
+    "../../x",
+    "=1+1",
+    0,
+    -1,
+    1.5,
+    10**30,
+    1e308,
+    "NaN",
+    "1e400",
+    [[]],
+    {"": None},
+    {"id": None},
+    "é" * 3000,
+    Written("NaN"),
+    Written("1e999"),
+    Written("-Infinity"),
+    Written("9" * 5000),
+    Written("[" * 3000 + "]" * 3000),
+    Written('{"a":' * 3000 + "1" + "}" * 3000),
+)
 ODD_CELLS = (
-    "", " ", "x\0y", "\x1b[31m", "9" * 5000, "-1", "1e999", "nan", "inf", "1,5", "=1+1", '"', '""', "'", ";", "\\N", "é" * 3000,
-    "a\nb", "a\rb", "\u2028", "true", "[" * 3000, "{}", "[1", '{"a": 1}', "2026-99-99", "correct", "mistake:", ":", "\x85",
-)  # fmt: skip
+    "",
+    " ",
+    "x\0y",
+    "\x1b[31m",
+    "9" * 5000,
+    "-1",
+    "1e999",
+    "nan",
+    "inf",
+    "1,5",
+    "=1+1",
+    '"',
+    '""',
+    "'",
+    ";",
+    "\\N",
+    "é" * 3000,
+    "a\nb",
+    "a\rb",
+    "\u2028",
+    "true",
+    "[" * 3000,
+    "{}",
+    "[1",
+    '{"a": 1}',
+    "2026-99-99",
+    "correct",
+    "mistake:",
+    ":",
+    "\x85",
+)
 
 
 def damaged_json(random, text):
-    """A JSON with one to three of its values exchanged, taken away, doubled or called otherwise, or with damaged bytes."""
+    """A JSON with one to three of its values exchanged, taken away, doubled or called otherwise, or with
+    damaged bytes."""
     if random.random() < 0.2:
         return damaged_bytes(random, text.encode("utf-8"))
     content = copy.deepcopy(json.loads(text))

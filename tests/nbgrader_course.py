@@ -1,4 +1,5 @@
-"""A course of nbgrader in a folder: its commands as a teacher types them, notebooks as students hand them in, its database."""
+"""A course of nbgrader in a folder: its commands as a teacher types them, notebooks as students hand them in,
+its database."""
 
 from __future__ import annotations
 
@@ -117,7 +118,8 @@ def code(source, **metadata):
 
 
 def points(folder):
-    """What the database has: the points of each grade cell, by student, and the cells that a person must look at."""
+    """What the database has: the points of each grade cell, by student, and the cells that a person must look
+    at."""
     with sqlite3.connect(folder / "gradebook.db") as base:
         rows = base.execute(
             "select sa.student_id, bc.name, g.auto_score, g.needs_manual_grade from grade g "

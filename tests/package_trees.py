@@ -1,4 +1,5 @@
-"""The files of the package, without the courses that it brings, parsed once for all tests that look at its code."""
+"""The files of the package, without the courses that it brings, parsed once for all tests that look at its
+code."""
 
 import ast
 import gc

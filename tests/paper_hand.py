@@ -1,4 +1,5 @@
-"""A draughtsman without a browser: the constructions of ``constructions.py`` on paper, for marks by the thousand."""
+"""A draughtsman without a browser: the constructions of ``constructions.py`` on paper, for marks by the
+thousand."""
 
 import cmath
 import math
@@ -16,9 +17,11 @@ from coursework.sheets.handout import handout
 
 
 class PaperHand(Draughtsman):
-    """The same hand with the same mistakes, and points that are ``moved``; what the surface would put into the boxes is computed.
+    """The same hand with the same mistakes, and points that are ``moved``; what the surface would put into
+    the boxes is computed.
 
-    ``steps`` are those of the construction in their order: the name, whether two lines meet there, and the points before it.
+    ``steps`` are those of the construction in their order: the name, whether two lines meet there, and the
+    points before it.
     """
 
     def __init__(self, variant, mistakes=None):

@@ -32,9 +32,19 @@ def heading(lang: str, student: str = "Zoé #1 Martin", *, cover: bool = False) 
     """Title, date, instructions, logo, version, a mark, one column printed and one to fill in."""
     title, course, (number, group), date, instructions = NOTES[lang]
     return PaperHeading(
-        lang, title, course, student, ((number, "20261234"), (group, "")), date, "1 h 30", instructions, "B",
-        Logo(SVG, "svg", ALT[lang]), cover, "20",
-    )  # fmt: skip
+        lang,
+        title,
+        course,
+        student,
+        ((number, "20261234"), (group, "")),
+        date,
+        "1 h 30",
+        instructions,
+        "B",
+        Logo(SVG, "svg", ALT[lang]),
+        cover,
+        "20",
+    )
 
 
 def bare(lang: str, student: str = "") -> PaperHeading:

@@ -1,5 +1,5 @@
-"""Somebody who draws a vector polygon by hand: their own pole and scale, points a third of a millimetre off, each vector laid
-off and each line drawn from their own points. Nothing here knows the package's polygons."""
+"""Somebody who draws a vector polygon by hand: their own pole and scale, points a third of a millimetre off,
+each vector laid off and each line drawn from their own points. Nothing here knows the package's polygons."""
 
 from __future__ import annotations
 

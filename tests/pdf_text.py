@@ -1,4 +1,5 @@
-"""The text of each page of a PDF, read from the file itself: its objects, its fonts' tables, its pages' streams."""
+"""The text of each page of a PDF, read from the file itself: its objects, its fonts' tables, its pages'
+streams."""
 
 from __future__ import annotations
 

@@ -1,4 +1,5 @@
-"""A PostgreSQL server of the tests' own, in a folder that goes with them; none where its programs are not installed."""
+"""A PostgreSQL server of the tests' own, in a folder that goes with them; none where its programs are not
+installed."""
 
 from __future__ import annotations
 

@@ -35,7 +35,8 @@ def items_of(drawn, lang):
 
 
 def answers(variant, posed: Posed, part) -> Iterator[Answer]:
-    """Answers to a part: right ones however they are written, on the edge, beside it, errors, nonsense, nothing."""
+    """Answers to a part: right ones however they are written, on the edge, beside it, errors, nonsense,
+    nothing."""
     if posed.kind == NUMBER:
         yield from (Answer(text, text, sort) for sort, text in _numbers(variant, posed, part))
     elif posed.kind == CHOICE:
@@ -97,7 +98,8 @@ def lost_of(drawn, platform="qti3"):
 
 
 def explained(lost, posed: Posed, answer: Answer, mark, share: float, theirs: float) -> str:
-    """The feature under which a difference falls; nothing where it falls under none that the platform loses."""
+    """The feature under which a difference falls; nothing where it falls under none that the platform
+    loses."""
     if abs(share - theirs) < 1e-9:
         return "same"
     for feature, holds in (
@@ -120,7 +122,8 @@ def recorded(given: Item, chosen) -> dict[str, object]:
 
 
 def sheets(variant, given: Item):
-    """Sheets of answers to an item: the k-th answers to all of its parts stand on the k-th; with the answers by part."""
+    """Sheets of answers to an item: the k-th answers to all of its parts stand on the k-th; with the answers
+    by part."""
     by_part = {
         posed.question.id: list(answers(variant, posed, part))
         for posed, part in zip(given.questions, variant.parts, strict=True)

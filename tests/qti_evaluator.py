@@ -1,4 +1,5 @@
-"""A small player of QTI: reads an item in either spelling, takes answers, and does what its response processing says.
+"""A small player of QTI: reads an item in either spelling, takes answers, and does what its response
+processing says.
 
 From the semantics of the specification alone: three values of truth, NULL for a response that holds nothing.
 """

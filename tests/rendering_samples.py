@@ -23,7 +23,8 @@ TEXTS = {
         "course": "Cinématique des mécanismes plans",
         "title": "Mécanisme à coulisse",
         "statement": (
-            "La manivelle $O_2A$, de longueur $r_2$, tourne autour du pivot fixe $O_2$. Son extrémité $A$ porte un "
+            "La manivelle $O_2A$, de longueur $r_2$, tourne autour du pivot fixe $O_2$. Son extrémité "
+            "$A$ porte un "
             "coulisseau qui glisse dans la rainure d'un guide articulé au bâti en $O_4$. On pose "
             r"$\overrightarrow{O_4O_2} = r_1\,\mathrm{e}^{i\theta_1}$ et "
             r"$\overrightarrow{O_4A} = r_A\,\mathrm{e}^{i\theta_4}$, avec $r_A > 0$."
@@ -50,7 +51,11 @@ TEXTS = {
         "tolerance": "à 1 % près",
         "angle_tolerance": "à 0,5° près",
         "introduction": "La boucle $O_4$, $O_2$, $A$ se ferme : ses deux chemins donnent le même vecteur.",
-        "words": ("Le vecteur $\\overrightarrow{O_4A}$ a pour norme", "et pour direction", "En dérivant la fermeture, il vient"),
+        "words": (
+            "Le vecteur $\\overrightarrow{O_4A}$ a pour norme",
+            "et pour direction",
+            "En dérivant la fermeture, il vient",
+        ),
         "remark": "L'arc tangente du quotient oublie le quadrant : il se trompe de 180° quand $x_A < 0$.",
         "says": "Le signe est opposé : relisez le sens positif des angles.",
     },
@@ -58,7 +63,8 @@ TEXTS = {
         "course": "Kinematics of plane mechanisms",
         "title": "Slotted mechanism",
         "statement": (
-            "The crank $O_2A$, of length $r_2$, turns about the fixed pivot $O_2$. Its end $A$ carries a block that "
+            "The crank $O_2A$, of length $r_2$, turns about the fixed pivot $O_2$. Its end $A$ carries "
+            "a block that "
             "slides in the slot of a guide hinged to the frame at $O_4$. Write "
             r"$\overrightarrow{O_4O_2} = r_1\,\mathrm{e}^{i\theta_1}$ and "
             r"$\overrightarrow{O_4A} = r_A\,\mathrm{e}^{i\theta_4}$, with $r_A > 0$."
@@ -85,11 +91,15 @@ TEXTS = {
         "tolerance": "within 1%",
         "angle_tolerance": "within 0.5°",
         "introduction": "The loop $O_4$, $O_2$, $A$ closes: its two paths give the same vector.",
-        "words": ("The vector $\\overrightarrow{O_4A}$ has the norm", "and the direction", "The rate of the closure gives"),
+        "words": (
+            "The vector $\\overrightarrow{O_4A}$ has the norm",
+            "and the direction",
+            "The rate of the closure gives",
+        ),
         "remark": "The arctangent of the quotient forgets the quadrant: it is off by 180° when $x_A < 0$.",
         "says": "The sign is opposite: look again at which way angles are positive.",
     },
-}  # fmt: skip
+}
 
 _QUESTIONS = (
     ("relation", "", "", "equation", 1),
@@ -186,21 +196,38 @@ def answer_sheet(lang: str, *, student: str = "") -> AnswerSheet:
     margins = {"rA": "3,2 mm" if lang == "fr" else "3.2 mm", "theta4": "0,5°" if lang == "fr" else "0.5°"}
     steps = (
         Step(
-            "rA", "r_A", r"\sqrt{r_1^2 + r_2^2 + 2\,r_1 r_2\cos(\theta_2 - \theta_1)}",
-            r"\sqrt{\num{228.6}^2 + \num{114.3}^2 + 2\times\num{228.6}\times\num{114.3}\cos(135^\circ - 90^\circ)}",
-            r"\num{319.8}\ \mathrm{mm}", text["words"][0], (), True,
+            "rA",
+            "r_A",
+            r"\sqrt{r_1^2 + r_2^2 + 2\,r_1 r_2\cos(\theta_2 - \theta_1)}",
+            r"\sqrt{\num{228.6}^2 + \num{114.3}^2 + 2\times\num{228.6}\times\num{114.3}\cos(135^\circ "
+            r"- 90^\circ)}",
+            r"\num{319.8}\ \mathrm{mm}",
+            text["words"][0],
+            (),
+            True,
         ),
         Step(
-            "theta4", r"\theta_4", r"\operatorname{atan2}(y_A, x_A)", "", r"\num{104.64}^\circ", text["words"][1],
-            (Remark(text["remark"], r"$\num{-75.4}^{\circ}$"),), True,
+            "theta4",
+            r"\theta_4",
+            r"\operatorname{atan2}(y_A, x_A)",
+            "",
+            r"\num{104.64}^\circ",
+            text["words"][1],
+            (Remark(text["remark"], r"$\num{-75.4}^{\circ}$"),),
+            True,
         ),
         Step(
-            "omega4", r"\omega_4",
+            "omega4",
+            r"\omega_4",
             r"\frac{r_2\,\omega_2\left(\cos\theta_2\cos\theta_4 + \sin\theta_2\sin\theta_4\right)}{r_A}",
-            r"\frac{\num{114.3}\times(\num{-12.5})\left(\cos 135^\circ\cos\num{104.64}^\circ + \sin 135^\circ\sin\num{104.64}^\circ\right)}{\num{319.8}}",
-            r"\num{-3.855}\ \mathrm{rad/s}", text["words"][2], (), True,
+            r"\frac{\num{114.3}\times(\num{-12.5})\left(\cos 135^\circ\cos\num{104.64}^\circ + \sin "
+            r"135^\circ\sin\num{104.64}^\circ\right)}{\num{319.8}}",
+            r"\num{-3.855}\ \mathrm{rad/s}",
+            text["words"][2],
+            (),
+            True,
         ),
-    )  # fmt: skip
+    )
     answers = tuple(
         Answer(question, values.get(question.id, r"$\num{-3.855}$"), margins.get(question.id, ""))
         for question in sheet.questions

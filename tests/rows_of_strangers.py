@@ -6,7 +6,8 @@ import csv
 import io
 import re
 
-#: What no terminal may be handed: control characters but tabulators and ends of lines, and what turns a text about.
+#: What no terminal may be handed: control characters but tabulators and ends of lines, and what turns a text
+#: about.
 ACTING = re.compile("[\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f\u061c\u200e\u200f\u202a-\u202e\u2066-\u2069]")
 FORMULA = "x;=cmd|' /C calc'!A0"
 
@@ -16,7 +17,8 @@ def computed_cells(text):
 
 
 def seen_by_a_spreadsheet(text):
-    """The cells that some way to open a table makes of it: by each separator, with quotation marks and without."""
+    """The cells that some way to open a table makes of it: by each separator, with quotation marks and
+    without."""
     for delimiter in ",;\t":
         for row in csv.reader(io.StringIO(text, newline=""), delimiter=delimiter):
             yield from row

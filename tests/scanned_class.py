@@ -1,4 +1,5 @@
-"""A small class whose papers were filled in and scanned: what is written is known, and drawn from the layout alone."""
+"""A small class whose papers were filled in and scanned: what is written is known, and drawn from the layout
+alone."""
 
 from __future__ import annotations
 
@@ -24,7 +25,8 @@ from coursework.scanning.pictures import PageImage
 from coursework.sheets.answer_pages import AnswerField, AnswerPage
 from coursework.system.tables import as_written
 
-#: What somebody writes, by part: a number as digits (a tuple of them for coordinates), the letters of boxes, or ``~`` for a scrawl.
+#: What somebody writes, by part: a number as digits (a tuple of them for coordinates), the letters of boxes,
+#: or ``~`` for a scrawl.
 Answers = Mapping[str, str | tuple[str, ...]]
 
 
@@ -62,7 +64,8 @@ class ScannedClass:
         return self.papers[student].variants(self.course)[0]
 
     def told(self, student: str, number: int, answers: Answers, seed: int = 1) -> np.ndarray:
-        """A picture that tells :func:`read_told` what is written on an answer page, in place of one of paper."""
+        """A picture that tells :func:`read_told` what is written on an answer page, in place of one of
+        paper."""
         said = {"code": self.pages(student)[number - 1].code_text, "answers": answers, "seed": seed}
         return as_picture(json.dumps(said).encode())
 
@@ -89,8 +92,8 @@ def as_picture(data: bytes) -> np.ndarray:
 
 
 def read_told(picture: PageImage, papers: Papers, reader: object, least: float) -> PageRead:
-    """Stands for the reading of pages where what they say is told: ``~`` is what a person must look at, ``≈`` a number that
-    is probably read right."""
+    """Stands for the reading of pages where what they say is told: ``~`` is what a person must look at, ``≈``
+    a number that is probably read right."""
     try:
         said = json.loads(picture.grey.tobytes().rstrip(b"\0"))
         _, code, number = said["code"].split(" ")

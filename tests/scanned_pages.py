@@ -1,7 +1,9 @@
-"""Answer pages filled in by hand, printed and scanned, in simulation: what is written is known, all from a seed.
+"""Answer pages filled in by hand, printed and scanned, in simulation: what is written is known, all from a
+seed.
 
-A page is drawn (from its PDF, or plainly from its layout), answers are written into its fields with strokes of pens and
-with digits of a bank of handwriting, and the sheet is scanned or photographed with the disturbances of its kind.
+A page is drawn (from its PDF, or plainly from its layout), answers are written into its fields with strokes
+of pens and with digits of a bank of handwriting, and the sheet is scanned or photographed with the
+disturbances of its kind.
 """
 
 from __future__ import annotations
@@ -94,8 +96,8 @@ def _code(sheet: np.ndarray, page: AnswerPage) -> None:
 
 @dataclass(frozen=True)
 class Wrote:
-    """What was written into a field, and what a reader that makes no mistake says of it: its ``text`` (ticks: the cases;
-    numbers: as typed); or that it ``waits``."""
+    """What was written into a field, and what a reader that makes no mistake says of it: its ``text`` (ticks:
+    the cases; numbers: as typed); or that it ``waits``."""
 
     text: str = ""
     cases: tuple[str, ...] = ()
@@ -253,7 +255,8 @@ def plain_digits(digit: int, rng: np.random.Generator) -> np.ndarray:
 
 
 def handwriting(images: np.ndarray, labels: np.ndarray) -> Bank:
-    """Digits of people: pictures (n, h, w), white on black, of which one is drawn, slanted a little, and written sharp."""
+    """Digits of people: pictures (n, h, w), white on black, of which one is drawn, slanted a little, and
+    written sharp."""
 
     def drawn(digit: int, rng: np.random.Generator) -> np.ndarray:
         image = images[rng.choice(np.flatnonzero(labels == digit))].astype(np.float32)
@@ -607,22 +610,73 @@ def _dithered(picture: np.ndarray) -> np.ndarray:
 
 #: Kinds of disturbance; each draws how a page was scanned.
 KINDS: Mapping[str, Callable[[np.random.Generator], Scan]] = {
-    "office scanner": lambda r: Scan(dpi=float(r.choice([200, 300])), turn=int(r.integers(4)), skew=r.uniform(-2, 2), noise=2.5, jpeg=85),
-    "150 dpi": lambda r: Scan(dpi=150, turn=int(r.integers(4)), skew=r.uniform(-3, 3), noise=4, blur=0.15, jpeg=60),
+    "office scanner": lambda r: Scan(
+        dpi=float(r.choice([200, 300])), turn=int(r.integers(4)), skew=r.uniform(-2, 2), noise=2.5, jpeg=85
+    ),
+    "150 dpi": lambda r: Scan(
+        dpi=150, turn=int(r.integers(4)), skew=r.uniform(-3, 3), noise=4, blur=0.15, jpeg=60
+    ),
     "600 dpi": lambda r: Scan(dpi=600, turn=int(r.integers(4)), skew=r.uniform(-2, 2), noise=5, jpeg=90),
-    "skew to 10 degrees": lambda r: Scan(dpi=200, skew=r.uniform(5, 10) * r.choice([-1, 1]), shear=r.uniform(-1, 1), turn=int(r.integers(4)), noise=3),
-    "black and white": lambda r: Scan(dpi=float(r.choice([200, 300])), bilevel=str(r.choice(["threshold", "otsu", "light"])), noise=4, skew=r.uniform(-2, 2), turn=2 * int(r.integers(2)), dust=int(r.integers(30))),
-    "dithered": lambda r: Scan(dpi=float(r.choice([200, 300])), bilevel="dither", noise=3, skew=r.uniform(-2, 2)),
-    "photograph": lambda r: Scan(dpi=r.uniform(190, 300), perspective=0.05, table=True, shadow=r.uniform(0, 0.5), noise=5, blur=r.uniform(0.1, 0.2), skew=r.uniform(-8, 8), turn=int(r.integers(4)), gamma=r.uniform(0.8, 1.3), light=r.uniform(0.75, 1), jpeg=75),
-    "curved photograph": lambda r: Scan(dpi=r.uniform(200, 300), perspective=0.04, table=True, shadow=r.uniform(0.1, 0.5), curve=r.uniform(1, 4) * r.choice([-1, 1]), noise=5, blur=0.15, skew=r.uniform(-5, 5), jpeg=80),
-    "edge of a shadow": lambda r: Scan(dpi=220, perspective=0.03, table=True, edge=r.uniform(0.2, 0.5), noise=5, blur=0.15, jpeg=80),
-    "coffee": lambda r: Scan(dpi=float(r.choice([200, 300])), stains=int(r.integers(1, 4)), skew=r.uniform(-2, 2), noise=3, jpeg=80),
+    "skew to 10 degrees": lambda r: Scan(
+        dpi=200,
+        skew=r.uniform(5, 10) * r.choice([-1, 1]),
+        shear=r.uniform(-1, 1),
+        turn=int(r.integers(4)),
+        noise=3,
+    ),
+    "black and white": lambda r: Scan(
+        dpi=float(r.choice([200, 300])),
+        bilevel=str(r.choice(["threshold", "otsu", "light"])),
+        noise=4,
+        skew=r.uniform(-2, 2),
+        turn=2 * int(r.integers(2)),
+        dust=int(r.integers(30)),
+    ),
+    "dithered": lambda r: Scan(
+        dpi=float(r.choice([200, 300])), bilevel="dither", noise=3, skew=r.uniform(-2, 2)
+    ),
+    "photograph": lambda r: Scan(
+        dpi=r.uniform(190, 300),
+        perspective=0.05,
+        table=True,
+        shadow=r.uniform(0, 0.5),
+        noise=5,
+        blur=r.uniform(0.1, 0.2),
+        skew=r.uniform(-8, 8),
+        turn=int(r.integers(4)),
+        gamma=r.uniform(0.8, 1.3),
+        light=r.uniform(0.75, 1),
+        jpeg=75,
+    ),
+    "curved photograph": lambda r: Scan(
+        dpi=r.uniform(200, 300),
+        perspective=0.04,
+        table=True,
+        shadow=r.uniform(0.1, 0.5),
+        curve=r.uniform(1, 4) * r.choice([-1, 1]),
+        noise=5,
+        blur=0.15,
+        skew=r.uniform(-5, 5),
+        jpeg=80,
+    ),
+    "edge of a shadow": lambda r: Scan(
+        dpi=220, perspective=0.03, table=True, edge=r.uniform(0.2, 0.5), noise=5, blur=0.15, jpeg=80
+    ),
+    "coffee": lambda r: Scan(
+        dpi=float(r.choice([200, 300])), stains=int(r.integers(1, 4)), skew=r.uniform(-2, 2), noise=3, jpeg=80
+    ),
     "folded": lambda r: Scan(dpi=200, fold=r.uniform(0.1, 0.4), skew=r.uniform(-2, 2), noise=3, dust=10),
-    "corner cut": lambda r: Scan(dpi=200, cut_corner=int(r.choice([0, 2, 3])), skew=r.uniform(-3, 3), noise=3),
-    "dust and streaks": lambda r: Scan(dpi=200, dust=int(r.integers(50, 300)), streaks=int(r.integers(4)), noise=4, skew=r.uniform(-2, 2)),
-    "dark copy": lambda r: Scan(dpi=200, gamma=r.uniform(1.4, 2.2), light=r.uniform(0.8, 0.95), noise=6, blur=0.2),
+    "corner cut": lambda r: Scan(
+        dpi=200, cut_corner=int(r.choice([0, 2, 3])), skew=r.uniform(-3, 3), noise=3
+    ),
+    "dust and streaks": lambda r: Scan(
+        dpi=200, dust=int(r.integers(50, 300)), streaks=int(r.integers(4)), noise=4, skew=r.uniform(-2, 2)
+    ),
+    "dark copy": lambda r: Scan(
+        dpi=200, gamma=r.uniform(1.4, 2.2), light=r.uniform(0.8, 0.95), noise=6, blur=0.2
+    ),
     "light copy": lambda r: Scan(dpi=200, gamma=r.uniform(0.4, 0.7), noise=4, blur=0.2),
-}  # fmt: skip
+}
 
 
 def a_hand(rng: np.random.Generator, bank: Bank | None = None) -> Hand:
@@ -665,9 +719,19 @@ def example_page(code: str = "ABCDEFGHIJKLM", *, rows: int = 4) -> AnswerPage:
     marks = ((11.0, 11.0), (wide - 11, 11.0), (wide - 11, high - 11), (11.0, high - 11))
     guide = tuple(Box(wide - 12 - (10 - d) * 7, 30.5, 7, 9) for d in range(10))
     return AnswerPage(
-        1, 1, f"CW1 {code} 1/1", wide, high, marks, Box(wide - 37.5, 8, 20, 20), tuple(fields),
-        title=Box(20, 8, 100, 8), name=Box(20, 17, 100, 8), rules=None, guide=guide,
-    )  # fmt: skip
+        1,
+        1,
+        f"CW1 {code} 1/1",
+        wide,
+        high,
+        marks,
+        Box(wide - 37.5, 8, 20, 20),
+        tuple(fields),
+        title=Box(20, 8, 100, 8),
+        name=Box(20, 17, 100, 8),
+        rules=None,
+        guide=guide,
+    )
 
 
 def _row(blank: AnswerField, y: float) -> AnswerField:
@@ -675,10 +739,17 @@ def _row(blank: AnswerField, y: float) -> AnswerField:
         return tuple(Box(12 + x + 7 * k, y + 1.25, 7, 9) for k in range(count))
 
     return replace(
-        blank, whole=Box(12, y + 0.25, 186, 11), sign=cells(29.5, 1)[0], digits=cells(37.5, 5), decimals=cells(75.5, 4),
-        power_sign=cells(111.5, 1)[0], power=cells(119, 2), unit=Box(147, y + 3.25, 5, 5), unit_text="mm",
+        blank,
+        whole=Box(12, y + 0.25, 186, 11),
+        sign=cells(29.5, 1)[0],
+        digits=cells(37.5, 5),
+        decimals=cells(75.5, 4),
+        power_sign=cells(111.5, 1)[0],
+        power=cells(119, 2),
+        unit=Box(147, y + 3.25, 5, 5),
+        unit_text="mm",
         free=Box(166.5, y + 1.25, 31.5, 9),
-    )  # fmt: skip
+    )
 
 
 def _cases(blank: AnswerField, y: float, count: int) -> AnswerField:

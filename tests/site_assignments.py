@@ -70,9 +70,16 @@ def code_of(reply):
 
 
 FORM = {
-    "opens": "2026-11-23T08:00", "closes": "2026-11-23T12:00", "tries": "2", "sittings": "last", "late": "charge", "late_percent": "12,5",
-    "late_until": "2026-11-25T12:00", "feedback": "closed", "answers": "never",
-}  # fmt: skip
+    "opens": "2026-11-23T08:00",
+    "closes": "2026-11-23T12:00",
+    "tries": "2",
+    "sittings": "last",
+    "late": "charge",
+    "late_percent": "12,5",
+    "late_until": "2026-11-25T12:00",
+    "feedback": "closed",
+    "answers": "never",
+}
 
 
 def dealt_by(one, staff, reply):

@@ -1,4 +1,5 @@
-"""The site in the system's Chromium: a server on the loopback interface, pages of a telephone and of a desk."""
+"""The site in the system's Chromium: a server on the loopback interface, pages of a telephone and of a
+desk."""
 
 import os
 import re
@@ -48,7 +49,8 @@ def served(class_, port=0):
 
 @contextmanager
 def windows(desk, name):
-    """Makes windows of somebody, each opened at an address; ``desk`` is a class, the address of its site, and a browser."""
+    """Makes windows of somebody, each opened at an address; ``desk`` is a class, the address of its site, and
+    a browser."""
     class_, address, browser = desk
     opened = []
 
@@ -137,7 +139,8 @@ _CUT = """() => {
   const scrolls = (one) => one && one !== document.documentElement &&
     (["auto", "scroll"].includes(getComputedStyle(one).overflowX) || scrolls(one.parentElement));
   const look = (one, box) => {
-    if (box.width && box.height && (box.right > wide + 1 || box.left < -1) && one.checkVisibility({ visibilityProperty: true })
+    const is_out = box.right > wide + 1 || box.left < -1;
+    if (box.width && box.height && is_out && one.checkVisibility({ visibilityProperty: true })
         && !one.closest(".visually-hidden, .skip, svg, script, style, noscript") && !scrolls(one))
       found.add(`${one.outerHTML.slice(0, 90)} ${Math.round(box.left)} to ${Math.round(box.right)} px`);
   };
@@ -145,9 +148,11 @@ _CUT = """() => {
   while (texts.nextNode()) {
     const range = document.createRange();
     range.selectNodeContents(texts.currentNode);
-    if (texts.currentNode.data.trim()) for (const box of range.getClientRects()) look(texts.currentNode.parentElement, box);
+    if (!texts.currentNode.data.trim()) continue;
+    for (const box of range.getClientRects()) look(texts.currentNode.parentElement, box);
   }
-  for (const one of document.querySelectorAll("button, input, select, textarea, img, summary, a[href]")) look(one, one.getBoundingClientRect());
+  for (const one of document.querySelectorAll("button, input, select, textarea, img, summary, a[href]"))
+    look(one, one.getBoundingClientRect());
   return Array.from(found).slice(0, 5);
 }"""
 
@@ -165,10 +170,14 @@ def enlarge_letters(page, percent=200):
 
 #: Controls that a thumb does not hit; links within a text are none.
 _LOW = """() => {
-  const inText = (one) => one.tagName === "A" && getComputedStyle(one).display === "inline" && one.closest("p, td, dd, li, h2, h3, summary");
-  const room = (one) => (["checkbox", "radio"].includes(one.type) ? one.closest("label") || one : one).getBoundingClientRect();
-  return Array.from(document.querySelectorAll("button, input:not([type=hidden]), select, textarea, summary, a[href]"))
-    .filter((one) => one.checkVisibility({ visibilityProperty: true }) && !one.closest(".visually-hidden, .skip") && !inText(one))
+  const inText = (one) => one.tagName === "A" && getComputedStyle(one).display === "inline"
+    && one.closest("p, td, dd, li, h2, h3, summary");
+  const room = (one) =>
+    (["checkbox", "radio"].includes(one.type) ? one.closest("label") || one : one).getBoundingClientRect();
+  const all = "button, input:not([type=hidden]), select, textarea, summary, a[href]";
+  return Array.from(document.querySelectorAll(all))
+    .filter((one) => one.checkVisibility({ visibilityProperty: true }))
+    .filter((one) => !one.closest(".visually-hidden, .skip") && !inText(one))
     .filter((one) => room(one).height > 0 && room(one).height < 43.5)
     .map((one) => `${one.outerHTML.slice(0, 90)} ${room(one).height.toFixed(0)} px`);
 }"""
@@ -180,7 +189,8 @@ def low(page):
 
 
 def watched(page):
-    """What goes wrong behind a page, as it happens: its console's errors, requests that fail, scripts that stop."""
+    """What goes wrong behind a page, as it happens: its console's errors, requests that fail, scripts that
+    stop."""
     found = []
     page.on("console", lambda one: found.append(one.text) if one.type in ("error", "warning") else None)
     page.on("pageerror", lambda fault: found.append(str(fault)))
@@ -195,13 +205,15 @@ def _ended(request):
 
 
 def cut_in_print(page):
-    """By how many pixels a page is wider than a sheet of A4 when it is printed, and what still sticks to the screen."""
+    """By how many pixels a page is wider than a sheet of A4 when it is printed, and what still sticks to the
+    screen."""
     page.emulate_media(media="print")
     size = page.viewport_size
     page.set_viewport_size({"width": 660, "height": 1000})  # 174 mm at 96 px an inch
     stuck = page.evaluate(
         """() => Array.from(document.querySelectorAll("main *"))
-        .filter((one) => ["sticky", "fixed"].includes(getComputedStyle(one).position) && one.checkVisibility() && one.tagName !== "TH")
+        .filter((one) => ["sticky", "fixed"].includes(getComputedStyle(one).position))
+        .filter((one) => one.checkVisibility() && one.tagName !== "TH")
         .map((one) => one.className)"""
     )
     found = (too_wide(page), stuck)

@@ -1,6 +1,7 @@
 """A client of an application without a server: it runs the application in its own thread, on one event loop.
 
-starlette's client begins a thread with an event loop for each request, which takes more time than most pages do.
+starlette's client begins a thread with an event loop for each request, which takes more time than most pages
+do.
 """
 
 import asyncio
@@ -22,7 +23,8 @@ def _loop():
 
 
 class Transport(testclient.httpx.BaseTransport):
-    """Hands a request to an application and waits for the end of its response; what the application raises is raised."""
+    """Hands a request to an application and waits for the end of its response; what the application raises is
+    raised."""
 
     def __init__(self, app, client):
         self.app, self.client = app, client

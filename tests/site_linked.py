@@ -30,7 +30,8 @@ AT_ONCE_TOLD = replace(USUAL, feedback=AT_ONCE)
 
 @cache
 def _pristine():
-    """A class whose assignment is dealt and published; its database is copied, since making one takes longer than most tests."""
+    """A class whose assignment is dealt and published; its database is copied, since making one takes longer
+    than most tests."""
     made = Class(f"sqlite:///{tempfile.mkdtemp()}/site.db")
     made.number = dealt(made, AT_ONCE_TOLD)
     with made.site.store.begin() as connection:
@@ -41,8 +42,8 @@ def _pristine():
 
 
 class Linked(Class):
-    """A site with a platform in front; its assignment is dealt to Zoé and Max. ``ahead`` are seconds by which the clock of the
-    service is turned."""
+    """A site with a platform in front; its assignment is dealt to Zoé and Max. ``ahead`` are seconds by which
+    the clock of the service is turned."""
 
     def __init__(self, folder, publication=AT_ONCE_TOLD, platform=PLATFORM):
         made = _pristine()
@@ -117,6 +118,8 @@ def _table():
         for one in ASSIGNMENT.exercises
     ]
     return {
-        "title": dict(ASSIGNMENT.title), "instructions": dict(ASSIGNMENT.instructions), "exercises": exercises,
+        "title": dict(ASSIGNMENT.title),
+        "instructions": dict(ASSIGNMENT.instructions),
+        "exercises": exercises,
         "mark": asdict(ASSIGNMENT.mark),
-    }  # fmt: skip
+    }

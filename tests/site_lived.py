@@ -153,18 +153,52 @@ def shown(site: Lived) -> list[Shown]:
 #: What shows no page to who asks for its address: forms that are sent there, files, pieces, ways on.
 NO_PAGES = frozenset(
     (
-        "/", "/language", "/who", "/sign-out", "/account/data", "/service-worker.js", "/static/{name}", "/assignments/{number:int}/read-back", "/practice/{exercise}", "/practice/{exercise}/{seed}/draft",
-        "/practice/{exercise}/{seed}/read", "/lessons/{lesson}/figures/{figure}", "/lessons/{lesson}/steps/{steps}", "/progress/progress.json", "/assignments/{number:int}/keep", "/assignments/{number:int}/hand-in",
-        "/assignments/{number:int}/file", "/assignments/{number:int}/{file}", "/assignments/{number:int}/receipts/{code}.{ending}", "/desk/issued",
+        "/",
+        "/language",
+        "/who",
+        "/sign-out",
+        "/account/data",
+        "/service-worker.js",
+        "/static/{name}",
+        "/assignments/{number:int}/read-back",
+        "/practice/{exercise}",
+        "/practice/{exercise}/{seed}/draft",
+        "/practice/{exercise}/{seed}/read",
+        "/lessons/{lesson}/figures/{figure}",
+        "/lessons/{lesson}/steps/{steps}",
+        "/progress/progress.json",
+        "/assignments/{number:int}/keep",
+        "/assignments/{number:int}/hand-in",
+        "/assignments/{number:int}/file",
+        "/assignments/{number:int}/{file}",
+        "/assignments/{number:int}/receipts/{code}.{ending}",
+        "/desk/issued",
         "/assignments/{number:int}/start",
-        "/desk/people/add", "/desk/people/add-staff", "/desk/people/extra-time", "/desk/people/{person}/data", "/desk/semester.csv",
-        *(f"/desk/people/{{person}}/{end}" for end in ("invitation", "role", "separate")), "/desk/assignments/dealing/{token}", "/desk/{assignment:int}/figure",
-        "/desk/{assignment:int}/queue/watch", "/desk/{assignment:int}/news", "/desk/{assignment:int}/report.pdf", "/desk/{assignment:int}/answers",
-        "/desk/{assignment:int}/roster", "/desk/{assignment:int}/gradebook", "/desk/{assignment:int}/feedback", "/desk/{assignment:int}/rejected",
-        "/desk/{assignment:int}/changes.csv", "/desk/{assignment:int}/files/{file}", "/desk/{assignment:int}/scans/picture",
+        "/desk/people/add",
+        "/desk/people/add-staff",
+        "/desk/people/extra-time",
+        "/desk/people/{person}/data",
+        "/desk/semester.csv",
+        *(f"/desk/people/{{person}}/{end}" for end in ("invitation", "role", "separate")),
+        "/desk/assignments/dealing/{token}",
+        "/desk/{assignment:int}/figure",
+        "/desk/{assignment:int}/queue/watch",
+        "/desk/{assignment:int}/news",
+        "/desk/{assignment:int}/report.pdf",
+        "/desk/{assignment:int}/answers",
+        "/desk/{assignment:int}/roster",
+        "/desk/{assignment:int}/gradebook",
+        "/desk/{assignment:int}/feedback",
+        "/desk/{assignment:int}/rejected",
+        "/desk/{assignment:int}/changes.csv",
+        "/desk/{assignment:int}/files/{file}",
+        "/desk/{assignment:int}/scans/picture",
         "/desk/{assignment:int}/scans/crop",
-        *(f"/desk/assignments/{{number:int}}/{end}" for end in ("publish", "unpublish", "extend", "roster", "make-up", "issued.json", "sheets")),
+        *(
+            f"/desk/assignments/{{number:int}}/{end}"
+            for end in ("publish", "unpublish", "extend", "roster", "make-up", "issued.json", "sheets")
+        ),
     )
-)  # fmt: skip
+)
 
 __all__ = ["EXERCISE", "NO_PAGES", "OTHER", "STUDENT", "TEACHER", "Lived", "Shown", "shown"]

@@ -9,7 +9,8 @@ from coursework.site.frame.settings import Site
 
 
 class OwnCourse(Class):
-    """A class whose course is a folder of its own, with one mechanism; ``folder`` is that of its exercises."""
+    """A class whose course is a folder of its own, with one mechanism; ``folder`` is that of its
+    exercises."""
 
     def __init__(self, folder):
         new_linkage(folder / "course", "toggle", "toggle", ["fr", "en"])

@@ -1,4 +1,5 @@
-"""A student with a finger on the drawing surface of a practice page: taps, tools, and what comes of them in the boxes."""
+"""A student with a finger on the drawing surface of a practice page: taps, tools, and what comes of them in
+the boxes."""
 
 import cmath
 import math
@@ -21,10 +22,12 @@ _PLACE = """([x, y]) => {
   const n = document.querySelector("[data-surface]"), at = n.getBoundingClientRect();
   if (at.top < 140 || at.bottom > innerHeight) n.scrollIntoView({ block: "center" });
   const b = n.getBoundingClientRect(), v = n.getAttribute("viewBox").split(" ").map(Number);
-  return [b.left + (x - v[0]) * b.width / v[2], b.top + (-y - v[1]) * b.height / v[3], b.left, b.top, b.right, b.bottom];
+  return [b.left + (x - v[0]) * b.width / v[2], b.top + (-y - v[1]) * b.height / v[3],
+    b.left, b.top, b.right, b.bottom];
 }"""
 
-#: The middle of a control of the surface, px, and whether it had to be scrolled to: out of sight, or under a bar.
+#: The middle of a control of the surface, px, and whether it had to be scrolled to: out of sight, or under a
+#: bar.
 _BUTTON = """(selector) => {
   const one = document.querySelector(".surface").querySelector(selector), middle = () => {
     const b = one.getBoundingClientRect();
@@ -38,7 +41,8 @@ _BUTTON = """(selector) => {
 
 
 class Pencil:
-    """A finger on the drawing surface of a practice page; ``number`` says which variant, whatever other tests have drawn."""
+    """A finger on the drawing surface of a practice page; ``number`` says which variant, whatever other tests
+    have drawn."""
 
     def __init__(self, desk, exercise, size="telephone", lang="en", number=None):
         self.class_, address, browser = desk
@@ -107,7 +111,8 @@ class Pencil:
         self.press(f"[data-in={name}]")
         self.keys += len(text)
         self.page.evaluate(
-            """([name, value]) => { const box = document.querySelector(`[data-in=${name}]`); box.value = value;
+            """([name, value]) => { const box = document.querySelector(`[data-in=${name}]`);
+              box.value = value;
             box.dispatchEvent(new Event("input", { bubbles: true })); }""",
             [name, text],
         )
@@ -172,12 +177,13 @@ _OTHER = {"parallel": "perpendicular", "perpendicular": "parallel"}
 
 
 class Draughtsman(Pencil):
-    """A student who constructs with set-square and compass, from what the sheet gives and the links of its figure.
+    """A student who constructs with set-square and compass, from what the sheet gives and the links of its
+    figure.
 
-    ``mistakes`` are those that they make, by the point that is found: of a vector that is laid off its ``sense``, ``length``,
-    ``direction``, ``vector`` or the point from which it starts wrongly; of two lines that meet the number of the line, and
-    its ``direction``, its ``sense`` or the point through which it goes wrongly. A ``scale`` is so many times what it should be, or
-    ``stated`` so; ``radii`` are exchanged.
+    ``mistakes`` are those that they make, by the point that is found: of a vector that is laid off its
+    ``sense``, ``length``, ``direction``, ``vector`` or the point from which it starts wrongly; of two lines
+    that meet the number of the line, and its ``direction``, its ``sense`` or the point through which it goes
+    wrongly. A ``scale`` is so many times what it should be, or ``stated`` so; ``radii`` are exchanged.
     """
 
     def __init__(self, *more, mistakes=None, **named):
@@ -207,7 +213,8 @@ class Draughtsman(Pencil):
         self.at[name] = z
 
     def line(self, tool, z, link=None, degrees=None):
-        """Draw a line through a point, along or square to a link or an angle; return its direction, complex."""
+        """Draw a line through a point, along or square to a link or an angle; return its direction,
+        complex."""
         self.tool(tool)
         angle = self.links[link] if link else degrees
         if link:
@@ -265,7 +272,8 @@ class Draughtsman(Pencil):
         return z
 
     def lay_off(self, start, tool, link, vector, name=None, text=None, step=None):
-        """Lay off a vector of known length along or square to a link; ``text`` is the length as it is typed, mm."""
+        """Lay off a vector of known length along or square to a link; ``text`` is the length as it is typed,
+        mm."""
         degrees = None
         match self.mistakes.get(step or name):
             case None:

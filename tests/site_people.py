@@ -1,4 +1,5 @@
-"""A site of the built-in course with an instructor and students, and browsers without a browser, each signed in as somebody."""
+"""A site of the built-in course with an instructor and students, and browsers without a browser, each signed
+in as somebody."""
 
 import re
 import shutil
@@ -22,7 +23,8 @@ from coursework.site.frame.cookies import COOKIE, Cookies, Session
 from coursework.site.frame.settings import Entrance, Site
 from coursework.site.lessons import lesson_content
 
-#: What one site finds of the built-in course, another finds as well; a lesson is rendered in a process that begins for it.
+#: What one site finds of the built-in course, another finds as well; a lesson is rendered in a process that
+#: begins for it.
 pool._drawn = cache(pool._drawn)
 lesson_content._rendered = cache(lesson_content._rendered)
 
@@ -82,7 +84,8 @@ def put_people(store):
 
 @cache
 def pristine():
-    """A database with the three people, and their numbers: copied, since making one takes longer than many tests."""
+    """A database with the three people, and their numbers: copied, since making one takes longer than many
+    tests."""
     path = Path(tempfile.mkdtemp()) / "site.db"
     store = Store(f"sqlite:///{path}")
     ids = put_people(store)
@@ -92,7 +95,8 @@ def pristine():
 
 
 class Browser(Client):
-    """Follows no address by itself; ``fill`` fills in the seal of the page's forms, and sees how answers are read."""
+    """Follows no address by itself; ``fill`` fills in the seal of the page's forms, and sees how answers are
+    read."""
 
     def __init__(self, app, lang):
         super().__init__(app, base_url=HOME, headers={"accept-language": lang})

@@ -37,7 +37,8 @@ class Practising:
         return self.browser.get(self.address).text
 
     def send(self, typed=(), below="", **fields):
-        """A form as a browser sends it, and the page that it leads to; what stands in its hidden fields comes from the page."""
+        """A form as a browser sends it, and the page that it leads to; what stands in its hidden fields comes
+        from the page."""
         versions = unescape(re.search(r'name="versions" value="([^"]*)"', self.page())[1])
         boxes = {BOX + name: text for name, text in dict(typed).items()}
         data = {"_seal": self.seal, "versions": versions, **boxes, **fields}

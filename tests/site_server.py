@@ -28,9 +28,13 @@ class Served:
         self.said, self.log = Path(folder, "said.txt"), Path(folder, "log.txt")
         with self.said.open("w") as said, self.log.open("w") as log:
             self.process = subprocess.Popen(
-                [sys.executable, "-c", COMMAND, *map(str, arguments)], stdout=said, stderr=log, stdin=subprocess.DEVNULL,
-                cwd=folder, start_new_session=True,
-            )  # fmt: skip
+                [sys.executable, "-c", COMMAND, *map(str, arguments)],
+                stdout=said,
+                stderr=log,
+                stdin=subprocess.DEVNULL,
+                cwd=folder,
+                start_new_session=True,
+            )
         self.url = until(self._address)
 
     def _address(self):

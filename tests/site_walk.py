@@ -1,4 +1,5 @@
-"""A site with something of everybody in it, the addresses of all of it, and what may stand on no page of somebody else."""
+"""A site with something of everybody in it, the addresses of all of it, and what may stand on no page of
+somebody else."""
 
 from __future__ import annotations
 
@@ -45,7 +46,8 @@ class Patient(Limits):
 
 
 class Filled(Class):
-    """Two students with an assignment of one exercise, handed in, and what each typed; ``number`` is the assignment's."""
+    """Two students with an assignment of one exercise, handed in, and what each typed; ``number`` is the
+    assignment's."""
 
     def __init__(self, url):
         path, is_new_file = url.removeprefix("sqlite:///"), url.startswith("sqlite:///")
@@ -114,7 +116,8 @@ class Filled(Class):
 
     @property
     def published(self):
-        """Open for two hours more, with one more try; verdicts are told at once, answers when it has closed."""
+        """Open for two hours more, with one more try; verdicts are told at once, answers when it has
+        closed."""
         opens, closes = self.at - timedelta(hours=3), self.at + timedelta(hours=2)
         return Publication(opens=opens, closes=closes, tries=2, feedback=AT_ONCE, answers=CLOSED)
 
@@ -132,7 +135,8 @@ class Filled(Class):
         return (name, str(SEEDS[name]), PLANTED[name])
 
     def answers(self, name):
-        """The reference answers of what somebody was issued: as sheets print them, and in all digits that could slip."""
+        """The reference answers of what somebody was issued: as sheets print them, and in all digits that
+        could slip."""
         given = {round(abs(float(one["value"])), 1) for one in self.variants[name].record["given"].values()}
         found = []
         for value in self.variants[name].solution().values():
@@ -190,17 +194,72 @@ def fillings(site: Filled) -> dict[str, Filling]:
         {"number": mine, "code": site.receipts[MAX], "ending": "json"},
     )
     anybodys = (
-        "/", "/service-worker.js", "/offline", "/accessibility", "/language", "/who", "/sign-in", "/sign-out", "/account", "/account/data", "/practice", "/progress",
-        "/progress/progress.json", "/assignments", "/desk", "/desk/semester", "/desk/semester.csv", "/desk/issued", "/desk/people", "/desk/people/extra-time", "/desk/people/add", "/desk/people/add-staff", "/desk/audit",
-        "/desk/receipts", "/desk/lti", "/mechanisms", "/desk/assignments", "/desk/assignments/new",
-    )  # fmt: skip
+        "/",
+        "/service-worker.js",
+        "/offline",
+        "/accessibility",
+        "/language",
+        "/who",
+        "/sign-in",
+        "/sign-out",
+        "/account",
+        "/account/data",
+        "/practice",
+        "/progress",
+        "/progress/progress.json",
+        "/assignments",
+        "/desk",
+        "/desk/semester",
+        "/desk/semester.csv",
+        "/desk/issued",
+        "/desk/people",
+        "/desk/people/extra-time",
+        "/desk/people/add",
+        "/desk/people/add-staff",
+        "/desk/audit",
+        "/desk/receipts",
+        "/desk/lti",
+        "/mechanisms",
+        "/desk/assignments",
+        "/desk/assignments/new",
+    )
     of_class = (
-        "", "/figure", "/queue", "/queue/watch", "/news", "/student", "/questions", "/question", "/report", "/report.pdf", "/files",
-        "/scans", "/scans/queue", "/scans/picture", "/scans/crop", "/answers", "/roster", "/gradebook", "/feedback", "/rejected", "/regrade", "/after", "/changes.csv",
-    )  # fmt: skip
+        "",
+        "/figure",
+        "/queue",
+        "/queue/watch",
+        "/news",
+        "/student",
+        "/questions",
+        "/question",
+        "/report",
+        "/report.pdf",
+        "/files",
+        "/scans",
+        "/scans/queue",
+        "/scans/picture",
+        "/scans/crop",
+        "/answers",
+        "/roster",
+        "/gradebook",
+        "/feedback",
+        "/rejected",
+        "/regrade",
+        "/after",
+        "/changes.csv",
+    )
     of_publishing = (
-        "", "/publish", "/unpublish", "/extend", "/roster", "/make-up", "/preview", "/as/{person:int}", "/issued.json", "/sheets",
-    )  # fmt: skip
+        "",
+        "/publish",
+        "/unpublish",
+        "/extend",
+        "/roster",
+        "/make-up",
+        "/preview",
+        "/as/{person:int}",
+        "/issued.json",
+        "/sheets",
+    )
     return {
         **dict.fromkeys(anybodys, Filling()),
         "/static/{name}": Filling({"name": "site.css"}),
@@ -246,8 +305,8 @@ _COORDINATES = re.compile(r' (?:d|points|transform|viewBox|[cr]?[xy][12]?|r|widt
 
 
 def text_of(reply) -> str:
-    """What a reply says, but for the coordinates of drawn lines, among which any number is by chance; of an archive, all that is in
-    it, the cells of its tables apart as no decimal comma is."""
+    """What a reply says, but for the coordinates of drawn lines, among which any number is by chance; of an
+    archive, all that is in it, the cells of its tables apart as no decimal comma is."""
     if not zipfile.is_zipfile(io.BytesIO(reply.content)):
         return _COORDINATES.sub("", reply.text)
     with zipfile.ZipFile(io.BytesIO(reply.content)) as archive:
@@ -315,8 +374,8 @@ __all__ = [
 
 
 class Forms(HTMLParser):
-    """The forms of a page that change something, each as a browser without a script sends it by each of its buttons: address and
-    texts."""
+    """The forms of a page that change something, each as a browser without a script sends it by each of its
+    buttons: address and texts."""
 
     def __init__(self, text):
         super().__init__()

@@ -1,6 +1,7 @@
 """A solution's formulas in sixty digits, and how far the last digit of what is given moves what they give.
 
-The inputs are taken as the exact numbers they are. A formula that loses a dozen digits at a hard place keeps more than forty.
+The inputs are taken as the exact numbers they are. A formula that loses a dozen digits at a hard place keeps
+more than forty.
 """
 
 from __future__ import annotations
@@ -42,7 +43,8 @@ SISTERS = {
 }
 
 
-#: What an error is the difference of, in its own unit: the structural error of a linkage, of angles of up to a turn.
+#: What an error is the difference of, in its own unit: the structural error of a linkage, of angles of up to
+#: a turn.
 DIFFERENCES = {"worst": 360.0}
 
 
@@ -76,7 +78,8 @@ class Formulas:
         return self.source.solution.graph.textbook
 
     def exact(self, given, name):
-        """One quantity; numbers that are of mpmath already stay as they are. Errors are those of the graph."""
+        """One quantity; numbers that are of mpmath already stay as they are. Errors are those of the
+        graph."""
         given = {
             n: mp.mpf(v) if isinstance(v, float) else v
             for n, v in {**given, **self.more}.items()
@@ -113,7 +116,8 @@ class Formulas:
             return None
 
     def excess(self, change, name, as_if=None):
-        """The error over what is allowed, at the variant with some values changed; 0 where nothing is to compare.
+        """The error over what is allowed, at the variant with some values changed; 0 where nothing is to
+        compare.
 
         ``as_if`` are values that mean the same as the changed ones, in fewer digits.
         """

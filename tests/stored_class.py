@@ -1,4 +1,5 @@
-"""A class of the small course in a database: what was issued, rows of answers, and what plain marking gives of them."""
+"""A class of the small course in a database: what was issued, rows of answers, and what plain marking gives
+of them."""
 
 from __future__ import annotations
 

@@ -31,7 +31,8 @@ _MANY = 20  #: exercises from which on a test is a sweep over the course
 
 
 def mark_sweeps(items: Iterable[pytest.Item], names: Collection[str]) -> None:
-    """Mark as ``sweep`` the items of tests over most exercises, except a handful of exercises and those that differ."""
+    """Mark as ``sweep`` the items of tests over most exercises, except a handful of exercises and those that
+    differ."""
     tests: dict[str, list[tuple[pytest.Item, str]]] = {}
     for item in items:
         values = item.callspec.params.values() if hasattr(item, "callspec") else ()
@@ -50,7 +51,8 @@ def mark_sweeps(items: Iterable[pytest.Item], names: Collection[str]) -> None:
 def changed_exercises() -> frozenset[str]:
     """Return the stems of the files in exercises/ and solutions/ that differ from the main branch.
 
-    Without git or a main branch there are none. On the main branch itself, its upstream is what they are compared with.
+    Without git or a main branch there are none. On the main branch itself, its upstream is what they are
+    compared with.
     """
     root = Path(__file__).resolve().parent.parent
     for base in ("origin/main", "main"):
@@ -71,7 +73,8 @@ def _git(root: Path, *arguments: str) -> list[str]:
 
 
 def at_once(names: Collection[str], few: Collection[str] = HANDFUL) -> pytest.MarkDecorator:
-    """The exercises of a test that goes over ``names`` at once: a few and those that differ always; all of them as a sweep."""
+    """The exercises of a test that goes over ``names`` at once: a few and those that differ always; all of
+    them as a sweep."""
     always = [name for name in names if name in few or name in changed_exercises()]
     blocks = [always, pytest.param(list(names), marks=pytest.mark.sweep)]
     return pytest.mark.parametrize("names", blocks, ids=["few", "all"])

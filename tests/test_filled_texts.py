@@ -13,9 +13,17 @@ FILLED = [
     "{ {{ n }} }",
 ]
 OTHER = [
-    "{{ r1 | upper }}", "{{ n + 1 }}", "{{- n }}", "{% if n %}a{% endif %}", "{# note #}{{ n }}", "{{{ n }}}",
-    "{{ true }}", "{{ None }}", "{{ n }} {{ 'x' }}", "{{ n",
-]  # fmt: skip
+    "{{ r1 | upper }}",
+    "{{ n + 1 }}",
+    "{{- n }}",
+    "{% if n %}a{% endif %}",
+    "{# note #}{{ n }}",
+    "{{{ n }}}",
+    "{{ true }}",
+    "{{ None }}",
+    "{{ n }} {{ 'x' }}",
+    "{{ n",
+]
 
 
 @each_row("text", FILLED)

@@ -1,4 +1,5 @@
-"""Compare the files of a wheel with those of the repository: ``python tests/wheel_contents.py dist/*.whl``."""
+"""Compare the files of a wheel with those of the repository:
+``python tests/wheel_contents.py dist/*.whl``."""
 
 from __future__ import annotations
 

@@ -1,9 +1,10 @@
 """Numbers that pass through a solution's formulas and record each operation.
 
-The functions of a solution are written for floats and arrays. A :class:`Followed` number passes through them, through
-``coursework.degrees`` and through numpy's functions, on one of two sorts of arithmetic: many digits, one number at a
-time, by mpmath; or plain arrays. On the way, a *tape* notes what must not vanish: a number that is divided by, the
-distance whose direction is asked, what a root is taken of, what an arcsine lacks to 1.
+The functions of a solution are written for floats and arrays. A :class:`Followed` number passes through them,
+through ``coursework.degrees`` and through numpy's functions, on one of two sorts of arithmetic: many digits,
+one number at a time, by mpmath; or plain arrays. On the way, a *tape* notes what must not vanish: a number
+that is divided by, the distance whose direction is asked, what a root is taken of, what an arcsine lacks to
+1.
 """
 
 from __future__ import annotations
@@ -53,9 +54,17 @@ class Arithmetic:
 
 
 _OF_CONTEXT = {
-    "mpf": "", "sinpi": "sinpi", "degrees": "degrees", "arg": "angle", "atan2": "arctan2", "sqrt": "sqrt", "ceil": "ceil",
-    "atan": "arctan", "asin": "arcsin", "acos": "arccos",
-}  # fmt: skip
+    "mpf": "",
+    "sinpi": "sinpi",
+    "degrees": "degrees",
+    "arg": "angle",
+    "atan2": "arctan2",
+    "sqrt": "sqrt",
+    "ceil": "ceil",
+    "atan": "arctan",
+    "asin": "arcsin",
+    "acos": "arccos",
+}
 
 _MARGINS: dict[str, tuple[str, Callable[..., Any]]] = {
     "true_divide": (QUOTIENT, lambda f, a, b: b),
@@ -164,10 +173,22 @@ def _operator(name: str, *, turned: bool = False) -> Any:
 
 
 _DUNDERS = {
-    "add": "add", "sub": "subtract", "mul": "multiply", "truediv": "true_divide", "pow": "power", "mod": "remainder",
-    "neg": "negative", "pos": "positive", "abs": "absolute", "lt": "less", "le": "less_equal", "gt": "greater",
-    "ge": "greater_equal", "eq": "equal", "ne": "not_equal",
-}  # fmt: skip
+    "add": "add",
+    "sub": "subtract",
+    "mul": "multiply",
+    "truediv": "true_divide",
+    "pow": "power",
+    "mod": "remainder",
+    "neg": "negative",
+    "pos": "positive",
+    "abs": "absolute",
+    "lt": "less",
+    "le": "less_equal",
+    "gt": "greater",
+    "ge": "greater_equal",
+    "eq": "equal",
+    "ne": "not_equal",
+}
 for _dunder, _name in _DUNDERS.items():
     setattr(Followed, f"__{_dunder}__", _operator(_name))
     if _dunder in ("add", "sub", "mul", "truediv", "pow", "mod"):
@@ -180,9 +201,12 @@ for _dunder, _name in _DUNDERS.items():
 def of_arrays(tape: Tape | None = None) -> Arithmetic:
     """Return the arithmetic of plain arrays, with numpy's functions."""
     names = (
-        "add subtract multiply true_divide divide power square reciprocal remainder negative positive absolute fabs sign "
-        "sqrt exp log log10 sin cos tan arctan2 arcsin arccos arctan hypot degrees radians deg2rad rad2deg conjugate floor "
-        "ceil rint maximum minimum fmax fmin less less_equal greater greater_equal equal not_equal isfinite isnan real imag "
+        "add subtract multiply true_divide divide power square reciprocal remainder negative positive "
+        "absolute fabs sign "
+        "sqrt exp log log10 sin cos tan arctan2 arcsin arccos arctan hypot degrees radians deg2rad "
+        "rad2deg conjugate floor "
+        "ceil rint maximum minimum fmax fmin less less_equal greater greater_equal equal not_equal "
+        "isfinite isnan real imag "
         "angle where clip copysign"
     ).split()
     functions = {name: getattr(np, name) for name in names}
@@ -218,20 +242,60 @@ def of_many_digits(digits: int) -> Arithmetic:
         return a / b if b else mp.nan
 
     functions: dict[str, Callable[..., Any]] = {
-        "add": operator.add, "subtract": operator.sub, "multiply": operator.mul, "true_divide": divide, "divide": divide,
-        "power": lambda a, b: _power(mp, a, b), "square": lambda a: a * a, "reciprocal": lambda a: divide(mp.one, a),
-        "remainder": lambda a, b: a - b * mp.floor(a / b), "negative": operator.neg, "positive": operator.pos,
-        "absolute": abs, "fabs": abs, "sign": mp.sign, "sqrt": root, "exp": mp.exp, "log": mp.log, "log10": mp.log10,
-        "sin": mp.sin, "cos": mp.cos, "tan": mp.tan, "arctan2": lambda y, x: mp.atan2(y, x) if y or x else mp.nan,
-        "arcsin": arc(mp.asin), "arccos": arc(mp.acos), "arctan": mp.atan, "hypot": mp.hypot, "degrees": mp.degrees,
-        "rad2deg": mp.degrees, "radians": mp.radians, "deg2rad": mp.radians, "conjugate": mp.conj, "floor": mp.floor,
-        "ceil": mp.ceil, "rint": mp.nint, "maximum": max, "minimum": min, "fmax": max, "fmin": min, "less": operator.lt,
-        "less_equal": operator.le, "greater": operator.gt, "greater_equal": operator.ge, "equal": operator.eq,
-        "not_equal": operator.ne, "isfinite": mp.isfinite, "isnan": mp.isnan, "real": mp.re, "imag": mp.im,
-        "angle": lambda z: mp.arg(z) if z else mp.nan, "where": lambda c, a, b: a if c else b,
-        "clip": lambda a, low, high: min(max(a, low), high), "copysign": lambda a, b: abs(a) if b >= 0 else -abs(a),
+        "add": operator.add,
+        "subtract": operator.sub,
+        "multiply": operator.mul,
+        "true_divide": divide,
+        "divide": divide,
+        "power": lambda a, b: _power(mp, a, b),
+        "square": lambda a: a * a,
+        "reciprocal": lambda a: divide(mp.one, a),
+        "remainder": lambda a, b: a - b * mp.floor(a / b),
+        "negative": operator.neg,
+        "positive": operator.pos,
+        "absolute": abs,
+        "fabs": abs,
+        "sign": mp.sign,
+        "sqrt": root,
+        "exp": mp.exp,
+        "log": mp.log,
+        "log10": mp.log10,
+        "sin": mp.sin,
+        "cos": mp.cos,
+        "tan": mp.tan,
+        "arctan2": lambda y, x: mp.atan2(y, x) if y or x else mp.nan,
+        "arcsin": arc(mp.asin),
+        "arccos": arc(mp.acos),
+        "arctan": mp.atan,
+        "hypot": mp.hypot,
+        "degrees": mp.degrees,
+        "rad2deg": mp.degrees,
+        "radians": mp.radians,
+        "deg2rad": mp.radians,
+        "conjugate": mp.conj,
+        "floor": mp.floor,
+        "ceil": mp.ceil,
+        "rint": mp.nint,
+        "maximum": max,
+        "minimum": min,
+        "fmax": max,
+        "fmin": min,
+        "less": operator.lt,
+        "less_equal": operator.le,
+        "greater": operator.gt,
+        "greater_equal": operator.ge,
+        "equal": operator.eq,
+        "not_equal": operator.ne,
+        "isfinite": mp.isfinite,
+        "isnan": mp.isnan,
+        "real": mp.re,
+        "imag": mp.im,
+        "angle": lambda z: mp.arg(z) if z else mp.nan,
+        "where": lambda c, a, b: a if c else b,
+        "clip": lambda a, low, high: min(max(a, low), high),
+        "copysign": lambda a, b: abs(a) if b >= 0 else -abs(a),
         "sinpi": mp.sinpi,
-    }  # fmt: skip
+    }
 
     def taking(function: Callable[..., Any]) -> Callable[..., Any]:
         return lambda *values: function(*[_exact(mp, v) for v in values])

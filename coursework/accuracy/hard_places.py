@@ -1,12 +1,13 @@
 """Hard places of a mechanism, where digits are lost, found from its formulas.
 
-Digits are lost where something that a formula needs vanishes: the determinant of the loops' Jacobian, a number that is
-divided by, the distance whose direction is asked, what a root is taken of, what an arcsine lacks to 1. A tape notes all
-of these *margins* while the formulas run on arrays (:mod:`coursework.accuracy.followed`); their zeros are sought along
-each given quantity, and their double zeros, where two solutions meet and part again, in planes of two.
+Digits are lost where something that a formula needs vanishes: the determinant of the loops' Jacobian, a
+number that is divided by, the distance whose direction is asked, what a root is taken of, what an arcsine
+lacks to 1. A tape notes all of these *margins* while the formulas run on arrays
+(:mod:`coursework.accuracy.followed`); their zeros are sought along each given quantity, and their double
+zeros, where two solutions meet and part again, in planes of two.
 
-Sought is over the ranges of the exercise, as a request may mix them: a length may be as long as any other of the
-mechanism, an angle is free, and no condition of a good variant holds.
+Sought is over the ranges of the exercise, as a request may mix them: a length may be as long as any other of
+the mechanism, an angle is free, and no condition of a good variant holds.
 """
 
 from __future__ import annotations
@@ -55,11 +56,11 @@ _FAILURES = (CourseworkError, NotFollowed, TypeError, ValueError)
 class HardPlace:
     """Place where digits are lost, and the quantity along which it is approached.
 
-    ``given`` holds the place itself, where there may be no answer; ``moved`` is what comes near, and ``scale`` what its
-    distance is counted in. ``kind`` and ``quantity`` say what vanishes there, in the formula of which quantity;
-    ``double`` places are those where it vanishes without changing sign as ``moved`` passes: two solutions touch.
-    ``lost`` is the largest relative error that a formula, or the last digit of the data, makes a millionth of the
-    scale away.
+    ``given`` holds the place itself, where there may be no answer; ``moved`` is what comes near, and
+    ``scale`` what its distance is counted in. ``kind`` and ``quantity`` say what vanishes there, in the
+    formula of which quantity; ``double`` places are those where it vanishes without changing sign as
+    ``moved`` passes: two solutions touch. ``lost`` is the largest relative error that a formula, or the last
+    digit of the data, makes a millionth of the scale away.
     """
 
     given: Mapping[str, Any]
@@ -79,8 +80,8 @@ class HardPlace:
         """Return the given values at a distance from the place, in parts of the scale; negative on the other
         side.
 
-        A growing length is as many times the scale as the distance is parts of it. ``aside`` is the offset of the tuned quantity, in parts of its own value: there the solutions come
-        near and pass.
+        A growing length is as many times the scale as the distance is parts of it. ``aside`` is the offset of
+        the tuned quantity, in parts of its own value: there the solutions come near and pass.
         """
         near = (
             self.scale / distance if self.kind == GROWING else self.given[self.moved] + distance * self.scale
@@ -345,8 +346,8 @@ class Terrain:
         return results
 
     def relative(self, given: Mapping[str, Any], only: str = "") -> Margins:
-        """Return the varying margins in parts of their typical size, of one quantity ``only`` if it is named; of those that
-        vanish together the first."""
+        """Return the varying margins in parts of their typical size, of one quantity ``only`` if it is named;
+        of those that vanish together the first."""
         keys = [key for key in self.distinct if only in ("", key[0])]
         # The determinant of the loops takes the values of all.
         names = [name for name, _, _ in (self.distinct if only == _LOOPS else keys) if name != _LOOPS]
@@ -502,7 +503,8 @@ def _touching(terrain: Terrain, base: Mapping[str, Any], moved: str, tuned: str)
 
 
 def _near_touch(m: np.ndarray) -> list[tuple[int, int]]:
-    """Return the cells of a plane where an extremum along the rows vanishes, or is about to, from row to row."""
+    """Return the cells of a plane where an extremum along the rows vanishes, or is about to, from row to
+    row."""
     results = []
     with np.errstate(all="ignore"):
         for least in (True, False):
@@ -642,7 +644,8 @@ def _ranked(terrain: Terrain, places: Sequence[HardPlace]) -> list[HardPlace]:
 
 
 def _lost(terrain: Terrain, point: HardPlace) -> float:
-    """Return the relative change near a place due to the textbook formula, or to the last digit of a datum."""
+    """Return the relative change near a place due to the textbook formula, or to the last digit of a
+    datum."""
     worst = 0.0
     graph, textbook = terrain.exercise.solution.graph, terrain.graph
     eps = np.finfo(float).eps

@@ -31,11 +31,11 @@ _TIMED = 10_000
 class Measurement:
     """Measurement of one way at one kind of place.
 
-    ``max_error`` is the largest, over places and quantities, against the reference: radians for angles; for the rest parts
-    of the value, or of its usual size where that is larger; beside a vanishing length parts of the value itself. For motions
-    in time, radians of the driver after the whole motion. ``failed`` of the ``n`` places have no answer though there is
-    one, and do not count; the error is None when none has one. Times are medians, with the quartiles beside;
-    ``build_ns`` is what a table costs before its first use.
+    ``max_error`` is the largest, over places and quantities, against the reference: radians for angles; for
+    the rest parts of the value, or of its usual size where that is larger; beside a vanishing length parts of
+    the value itself. For motions in time, radians of the driver after the whole motion. ``failed`` of the
+    ``n`` places have no answer though there is one, and do not count; the error is None when none has one.
+    Times are medians, with the quartiles beside; ``build_ns`` is what a table costs before its first use.
     """
 
     exercise: str
@@ -86,7 +86,8 @@ def subject_of(exercise: CourseExercise) -> Subject:
     if not numbers_of(exercise):
         raise BadInput(
             (
-                "{name} asks for no number that could lose digits, so there is nothing to measure: counts, choices "
+                "{name} asks for no number that could lose digits, so there is nothing to measure: "
+                "counts, choices "
                 "and equations are exact"
             ),
             name=exercise.name,
@@ -109,7 +110,8 @@ def measure(exercise: CourseExercise, *, quick: bool = False) -> Iterator[Measur
     if not subject.reference.wanted:
         raise BadInput(
             (
-                "{name}: no reference for {lacking}: its formula cannot be evaluated with many digits; formulas with "
+                "{name}: no reference for {lacking}: its formula cannot be evaluated with many digits; "
+                "formulas with "
                 "coursework.degrees and numpy's elementary functions can"
             ),
             name=exercise.name,
@@ -121,9 +123,21 @@ def measure(exercise: CourseExercise, *, quick: bool = False) -> Iterator[Measur
     if subject.study.motion is not None:
         for m in motion_rows(exercise, subject.study, quick):
             yield Measurement(
-                exercise.name, MOTION, f"{m.method}-{m.setting:g}", m.place, 1e9 * m.times.median, m.error, 1, 0, m.method,
-                m.setting, 1e9 * m.times.low, 1e9 * m.times.high, m.times.rounds, m.build and 1e9 * m.build,
-            )  # fmt: skip
+                exercise.name,
+                MOTION,
+                f"{m.method}-{m.setting:g}",
+                m.place,
+                1e9 * m.times.median,
+                m.error,
+                1,
+                0,
+                m.method,
+                m.setting,
+                1e9 * m.times.low,
+                1e9 * m.times.high,
+                m.times.rounds,
+                m.build and 1e9 * m.build,
+            )
 
 
 def checked(subject: Subject, seeds: Sequence[int] = (0, 1)) -> ClosureResidual | None:
@@ -138,7 +152,8 @@ def checked(subject: Subject, seeds: Sequence[int] = (0, 1)) -> ClosureResidual 
     if closing is not None and not closing.is_closed:
         raise BadCourse(
             f"{subject.exercise.solution.source}: its formulas and its equations contradict each other: "
-            f"{closing.equation} lacks {closing.lack:.1e} of its terms to close; with a wrong formula nothing can be "
+            f"{closing.equation} lacks {closing.lack:.1e} of its terms to close; with a wrong formula "
+            "nothing can be "
             "called exact, so nothing is measured"
         )
     return closing
@@ -220,9 +235,21 @@ class _Trial:
         self, method: ComputingMethod, point: str, spent: Times, error: float | None, count: int, failed: int
     ) -> Measurement:
         return Measurement(
-            self.subject.exercise.name, self.what, method.name, point, 1e9 * spent.median, error, count, failed, method.family,
-            method.setting, 1e9 * spent.low, 1e9 * spent.high, spent.rounds, method.build and 1e9 * method.build,
-        )  # fmt: skip
+            self.subject.exercise.name,
+            self.what,
+            method.name,
+            point,
+            1e9 * spent.median,
+            error,
+            count,
+            failed,
+            method.family,
+            method.setting,
+            1e9 * spent.low,
+            1e9 * spent.high,
+            spent.rounds,
+            method.build and 1e9 * method.build,
+        )
 
     def _reference(self, places: Places) -> dict[str, list[Any]]:
         return right_values(self.subject, places, self.wanted)

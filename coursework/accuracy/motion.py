@@ -1,7 +1,8 @@
 """Accuracy of motion in time: cost and error of a tolerance, a fixed step or a table.
 
-One small interface: a *method* is a function of a scene, an effort, a duration and whether time is short, that yields a
-:class:`MotionRun` for each of its settings. What stands in :data:`METHODS` is measured, with friction and without.
+One small interface: a *method* is a function of a scene, an effort, a duration and whether time is short,
+that yields a :class:`MotionRun` for each of its settings. What stands in :data:`METHODS` is measured, with
+friction and without.
 """
 
 from __future__ import annotations
@@ -29,8 +30,8 @@ _FINE = 800  #: equal steps where a table makes each of them cheap
 class MotionRun(NamedTuple):
     """Motion by one method at one setting.
 
-    ``end`` integrates it, each time anew, to where its driver stands at the end, degrees, not reduced, and how fast it turns
-    there, rad/s; ``build`` is how many seconds were spent before.
+    ``end`` integrates it, each time anew, to where its driver stands at the end, degrees, not reduced, and
+    how fast it turns there, rad/s; ``build`` is how many seconds were spent before.
     """
 
     method: str
@@ -276,9 +277,11 @@ class _Acceleration:
         for _ in range(4):
             at = np.array([guess, guess + 1e-3])
             given = {
-                **self.given, self.driver.angle: np.full(2, np.degrees(state[0])), self.driver.speed: np.full(2, state[1]),
+                **self.given,
+                self.driver.angle: np.full(2, np.degrees(state[0])),
+                self.driver.speed: np.full(2, state[1]),
                 self.driver.acceleration: at,
-            }  # fmt: skip
+            }
             pull = self.graph.evaluate((self.driver.effort,), given, self.effects)[self.driver.effort]
             guess += (self.effort - pull[0]) / ((pull[1] - pull[0]) / 1e-3)
         return guess

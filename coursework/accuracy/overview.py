@@ -25,12 +25,13 @@ _RIGHT = 2e-15  #: relative: right to the last digits
 class OverviewLine:
     """Results of one exercise; errors are relative as in :class:`~coursework.accuracy.measuring.Measurement`.
 
-    ``lack`` of the equation that vouches for the reference, in parts of its terms; None where none is stated. At the hard
-    places two errors: the solver's and the textbook formula's;
-    ``beyond`` is the solver's largest error there over eight times what is unavoidable at the same place, so that more
-    than 1 is a digit that could be kept; ``losing`` has this number of each quantity where it is more than 1, and
-    ``asked_losing`` are those of them that the exercise asks for. ``wrong`` tells of formulas that contradict the stated equations: nothing is
-    measured then. ``lacking`` are quantities whose formulas cannot be followed in many digits.
+    ``lack`` of the equation that vouches for the reference, in parts of its terms; None where none is stated.
+    At the hard places two errors: the solver's and the textbook formula's; ``beyond`` is the solver's largest
+    error there over eight times what is unavoidable at the same place, so that more than 1 is a digit that
+    could be kept; ``losing`` has this number of each quantity where it is more than 1, and ``asked_losing``
+    are those of them that the exercise asks for. ``wrong`` tells of formulas that contradict the stated
+    equations: nothing is measured then. ``lacking`` are quantities whose formulas cannot be followed in many
+    digits.
     """
 
     exercise: str
@@ -164,8 +165,8 @@ class _Survey:
     def _beyond(
         self, places: Places, reference: dict[str, list[Any]], names: Sequence[str], solver: dict[str, Any]
     ) -> dict[str, float]:
-        """Return the largest error of each quantity by the solver, relative to eight times the unavoidable error
-        at the same place."""
+        """Return the largest error of each quantity by the solver, relative to eight times the unavoidable
+        error at the same place."""
         worst: dict[str, float] = {}
         for i, point in enumerate(one_by_one(places)):
             doubtful = {}

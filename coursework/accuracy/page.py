@@ -115,10 +115,13 @@ def _read_motion(rows: Sequence[Measurement], where: str, texts: Words) -> list[
         first, last = tolerances[0], tolerances[-1]
         result.append(
             reading["motion"].format(
-                loose=number(_set(first)), tight=number(_set(last)), first=number(_measured(first)),
-                last=number(_measured(last)), place=where,
+                loose=number(_set(first)),
+                tight=number(_set(last)),
+                first=number(_measured(first)),
+                last=number(_measured(last)),
+                place=where,
             )
-        )  # fmt: skip
+        )
     for limit in _MOTION_LIMITS:
         good = [r for r in rows if _measured(r) <= limit]
         best = cheapest(good)

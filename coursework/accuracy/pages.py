@@ -180,12 +180,16 @@ def _paper_words(rows: Sequence[PaperRow], digits: int, texts: Words) -> str:
     if share := by_digits.get(digits):
         plain = by_digits[PLAIN]
         results += [
-            texts["kept"].format(digits=digits, plain=_percent(share.wronged, texts), ours=_percent(share.wronged_ours, texts)),
-            texts["passes"].format(
-                mistakes=_percent(share.mistakes, texts), neighbours=_percent(share.neighbours, texts),
-                plain_mistakes=_percent(plain.mistakes, texts), plain_neighbours=_percent(plain.neighbours, texts),
+            texts["kept"].format(
+                digits=digits, plain=_percent(share.wronged, texts), ours=_percent(share.wronged_ours, texts)
             ),
-        ]  # fmt: skip
+            texts["passes"].format(
+                mistakes=_percent(share.mistakes, texts),
+                neighbours=_percent(share.neighbours, texts),
+                plain_mistakes=_percent(plain.mistakes, texts),
+                plain_neighbours=_percent(plain.neighbours, texts),
+            ),
+        ]
     for fewer in (digits - 1, digits - 2):
         if row := by_digits.get(fewer):
             results.append(texts["fewer"].format(digits=fewer, mistakes=_percent(row.mistakes, texts)))

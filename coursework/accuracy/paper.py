@@ -1,8 +1,8 @@
 """Accuracy on paper: the digits that a student keeps, and the margin for them.
 
-The same simulated students as in ``coursework check``: who does everything right and rounds each step; who makes a named
-mistake; who hands in the neighbour's variant. Against them stand a plain margin, and one that is widened to what
-rounding on the way can do to an answer.
+The same simulated students as in ``coursework check``: who does everything right and rounds each step; who
+makes a named mistake; who hands in the neighbour's variant. Against them stand a plain margin, and one that
+is widened to what rounding on the way can do to an answer.
 """
 
 from __future__ import annotations

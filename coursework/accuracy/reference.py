@@ -1,8 +1,9 @@
 """Reference values in many digits, checked against independent equations.
 
-The textbook formulas of a solution are computed in a hundred digits, of which they may lose some and be exact still. That a
-formula is *right* no number of digits says. So what comes out is put into the equations that the solution states
-besides: the loops and their two derivatives in time, and ``residual``. All must close to forty digits.
+The textbook formulas of a solution are computed in a hundred digits, of which they may lose some and be exact
+still. That a formula is *right* no number of digits says. So what comes out is put into the equations that
+the solution states besides: the loops and their two derivatives in time, and ``residual``. All must close to
+forty digits.
 """
 
 from __future__ import annotations
@@ -223,9 +224,7 @@ class Reference:
         if order == 1:
             return [slide * unit, 1j * length * turn * unit]
         slide2, turn2 = rate(v.length, 1), rate(v.angle, 1)
-        return [
-            slide2 * unit, -length * turn**2 * unit, 2j * slide * turn * unit, 1j * length * turn2 * unit
-        ]  # fmt: skip
+        return [slide2 * unit, -length * turn**2 * unit, 2j * slide * turn * unit, 1j * length * turn2 * unit]
 
     def _of_residual(self, given: Mapping[str, Any]) -> dict[str, float]:
         if self._residual_graph is None:

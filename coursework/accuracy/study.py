@@ -11,9 +11,10 @@ from typing import Any
 class Motion:
     """Motion in time, integrated at several tolerances.
 
-    The effects are ``inertia``, under a constant effort of the driver, and where ``friction`` is given a second motion
-    with that. Without friction the speed follows from the energy at every angle, and the time from an integral, so that
-    there is something exact to compare with. ``given`` are values that replace the generic ones; ``duration`` is in seconds.
+    The effects are ``inertia``, under a constant effort of the driver, and where ``friction`` is given a
+    second motion with that. Without friction the speed follows from the energy at every angle, and the time
+    from an integral, so that there is something exact to compare with. ``given`` are values that replace the
+    generic ones; ``duration`` is in seconds.
     """
 
     effort: float

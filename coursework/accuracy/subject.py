@@ -1,8 +1,8 @@
 """Subject of a measurement: everything that follows from an exercise and its solution.
 
-Which quantities are positions, rates, accelerations follows from the loops and their derivatives, else from units; the
-generic mechanism is the exercise's first variant, its driver turned through a whole turn, or where nothing is driven the
-first variants one after another. A ``Study`` in the solution adds what does not follow.
+Which quantities are positions, rates, accelerations follows from the loops and their derivatives, else from
+units; the generic mechanism is the exercise's first variant, its driver turned through a whole turn, or where
+nothing is driven the first variants one after another. A ``Study`` in the solution adds what does not follow.
 """
 
 from __future__ import annotations
@@ -22,9 +22,14 @@ from coursework.errors import BadCourse, NoSolution
 POSITION, RATE, ACCELERATION, OTHER, MOTION = "position", "rate", "acceleration", "other", "motion"
 WHATS = (POSITION, RATE, ACCELERATION, OTHER)
 _OF_UNITS = {
-    "deg": POSITION, "mm": POSITION, "rad": POSITION, "rad/s": RATE, "mm/s": RATE, "rad/s^2": ACCELERATION,
+    "deg": POSITION,
+    "mm": POSITION,
+    "rad": POSITION,
+    "rad/s": RATE,
+    "mm/s": RATE,
+    "rad/s^2": ACCELERATION,
     "mm/s^2": ACCELERATION,
-}  # fmt: skip
+}
 
 Places = dict[str, Any]  #: given values: arrays of one shape, texts
 

@@ -13,7 +13,8 @@ import numpy as np
 WIDE = 0.25  #: a spread, in parts of the median, that an idle machine hardly makes
 MANY = 0.2  #: the share of wide spreads from which on no time of a page is compared
 ALIKE = 1.75  #: times whose ratio is smaller are alike, whatever their spreads
-#: Processor time where it is told finely, so that what else the machine does counts little; else the time that passes.
+#: Processor time where it is told finely, so that what else the machine does counts little; else the time
+#: that passes.
 clock = time.process_time if time.get_clock_info("process_time").resolution <= 1e-6 else time.perf_counter
 _ROUNDS = 9
 _LEAST_ROUNDS = 3
@@ -71,7 +72,8 @@ def interleaved(
 
 
 def _seconds_once(call: Callable[[], Any], at_least: float) -> float:
-    """Return about the seconds of one call: of twice as many calls each time, until the clock sees a quarter of ``at_least``.
+    """Return about the seconds of one call: of twice as many calls each time, until the clock sees a quarter
+    of ``at_least``.
 
     A clock may tick more coarsely than it says, as that of processor time does while a profiler samples.
     """

@@ -1,7 +1,7 @@
 """Conclusions of a measurement in words, stable under repeated measurement.
 
-No time stands in a sentence, and none is called shorter than another unless the quartiles are apart and their ratio is
-plain. Errors are the same in every run, and may be told.
+No time stands in a sentence, and none is called shorter than another unless the quartiles are apart and their
+ratio is plain. Errors are the same in every run, and may be told.
 """
 
 from __future__ import annotations
@@ -120,7 +120,8 @@ def paid_after(row: Measurement, stable: Measurement | None) -> float | None:
 
 
 def halves(rows: Sequence[Measurement]) -> bool:
-    """Return whether each step of Newton's method only halves the error, as it does where two solutions meet."""
+    """Return whether each step of Newton's method only halves the error, as it does where two solutions
+    meet."""
     return len(rows) > 1 and all(
         a.max_error and b.max_error and 0.3 < b.max_error / a.max_error < 0.7 for a, b in pairwise(rows)
     )

@@ -1,8 +1,8 @@
 """Ways to compute the quantities of an exercise: functions of places, to be timed and compared.
 
-A way takes the given values of many places as arrays, and gives an array a quantity, in canonical units; NaN where it
-has no answer. Some need a mechanism that is fixed but for its driver: a table over the turn, a start from which
-Newton's method sets out, a difference of two positions.
+A way takes the given values of many places as arrays, and gives an array a quantity, in canonical units; NaN
+where it has no answer. Some need a mechanism that is fixed but for its driver: a table over the turn, a start
+from which Newton's method sets out, a difference of two positions.
 """
 
 from __future__ import annotations
@@ -139,7 +139,8 @@ class _Turning:
         return float(self.fixed[self.subject.speed])
 
     def table(self, nodes: int) -> Callable[[Places], Values]:
-        """Return the cubic Hermite interpolation over the turn, from values and slopes at equidistant nodes."""
+        """Return the cubic Hermite interpolation over the turn, from values and slopes at equidistant
+        nodes."""
         from scipy.interpolate import CubicHermiteSpline
 
         # Half a step off the quarters of the turn, where a rate may not exist, and one more at either end.
@@ -280,8 +281,8 @@ class _Turning:
     def complex_step(self) -> Callable[[Places], Values]:
         """Return the way by the complex step: the imaginary part of the closed loops at an imaginary step.
 
-        The loops are closed at the angle itself, so that one step of Newton's method gives all of the first order; a
-        second one would only bring in the rounding that the first one left.
+        The loops are closed at the angle itself, so that one step of Newton's method gives all of the first
+        order; a second one would only bring in the rounding that the first one left.
         """
         rates, step, closure = self.subject.rate_of, 1e-40, self._loops
 

@@ -1,7 +1,7 @@
 """The promise that any question may be asked alone, with those that it is judged together with.
 
-An assignment, `--parts` and a lesson's worked example ask some of an exercise's questions. Handout, worked solution, blanks and
-marks must then do without what the others would have found on the way.
+An assignment, `--parts` and a lesson's worked example ask some of an exercise's questions. Handout, worked
+solution, blanks and marks must then do without what the others would have found on the way.
 """
 
 from __future__ import annotations
@@ -25,7 +25,8 @@ from coursework.sheets.handout import handout
 
 
 def asked_alone(exercise: CourseExercise) -> tuple[tuple[Part, ...], ...]:
-    """Return the least that may be asked of an exercise: each question, with those that it is judged together with."""
+    """Return the least that may be asked of an exercise: each question, with those that it is judged together
+    with."""
     return tuple(dict.fromkeys(exercise.chosen_parts([part.id]) or () for part in exercise.spec.parts))
 
 

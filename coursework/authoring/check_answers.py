@@ -1,4 +1,5 @@
-"""Simulated students: exact ones, who round, who make each known mistake, who follow from an error, who write nonsense."""
+"""Simulated students: exact ones, who round, who make each known mistake, who follow from an error, who write
+nonsense."""
 
 from __future__ import annotations
 
@@ -20,9 +21,24 @@ from coursework.model import Part
 from coursework.parsing.reading import MOST_TURNS
 from coursework.quantities.rounding import student_who_rounds
 
-NONSENSE = ("?", "je ne sais pas", "12 +", "nan", "9**9**9", "1 = 1 = 1", "__import__('os')", "((((", *(
-    "same as above", "voir au dos", "I ran out of time", "pas le temps de finir", "see question: 3", "not a hinge, or is it",
-))  # fmt: skip
+NONSENSE = (
+    "?",
+    "je ne sais pas",
+    "12 +",
+    "nan",
+    "9**9**9",
+    "1 = 1 = 1",
+    "__import__('os')",
+    "((((",
+    *(
+        "same as above",
+        "voir au dos",
+        "I ran out of time",
+        "pas le temps de finir",
+        "see question: 3",
+        "not a hinge, or is it",
+    ),
+)
 EXTREMES = ("0", "1e308", "-1e308", "1e-320")  #: coordinates too
 
 
@@ -96,7 +112,8 @@ def check_rounding_students(
                 )
                 if not gap <= 1:
                     report.fail(
-                        f"seed {variant.seed}: who rounds each step to {digits_kept} digits lands {gap:.3g} half-widths "
+                        f"seed {variant.seed}: who rounds each step to {digits_kept} digits lands "
+                        f"{gap:.3g} half-widths "
                         f"from {part.id}"
                     )
 
@@ -179,7 +196,8 @@ def check_slips(variant: Variant, key: Key, report: CheckReport) -> None:
 
 
 def _answers_another(key: Key, part: Part, value: Any) -> bool:
-    """Return whether a wrong value is the right one of another question: two answers exchanged are no slip."""
+    """Return whether a wrong value is the right one of another question: two answers exchanged are no
+    slip."""
     return any(
         other.quantity != part.quantity
         and other.kind == part.kind
@@ -236,14 +254,16 @@ def _check_follows_together(variant: Variant, key: Key, first: Part, wrong: Any,
 
 
 def _written(value: Any) -> Any:
-    """Return a value as a student may write it: a vector by its coordinates, a matrix as lists, several cases by their names."""
+    """Return a value as a student may write it: a vector by its coordinates, a matrix as lists, several cases
+    by their names."""
     if isinstance(value, np.ndarray) and value.ndim == 2:
         return str(value.tolist())
     return "; ".join(map(repr, value.tolist())) if isinstance(value, np.ndarray) else value
 
 
 def _check_recognised(variant: Variant, sheet: Mapping[str, tuple[str, Any]], report: CheckReport) -> None:
-    """Check that the mistakes on a sheet are recognised; by part the name of each, if any, and the answer that it gives."""
+    """Check that the mistakes on a sheet are recognised; by part the name of each, if any, and the answer
+    that it gives."""
     marking = grade(variant, {part_id: answer for part_id, (_, answer) in sheet.items()})
     exchanges = {
         name for mark in marking.values() if "slip:exchanged" in mark.matches for name in mark.mistakes
@@ -279,7 +299,8 @@ def check_nonsense(variant: Variant, report: CheckReport) -> None:
 
 
 def _check_extreme(variant: Variant, number: str, report: CheckReport) -> None:
-    """Check the same of a sheet of one absurd number, and of one such answer beside right ones to the same judge.
+    """Check the same of a sheet of one absurd number, and of one such answer beside right ones to the same
+    judge.
 
     Where each answer stands for itself, nought may be right.
     """

@@ -1,11 +1,12 @@
 """The promise that the formula on paper gives the number on paper.
 
-Each step of a worked solution that prints a formula with its numbers is read back from the print and evaluated. It must
-give the printed value, up to what the rounding of the printed numbers can do: each number that may be rounded is moved
-by half of its last digit, alone, and the moves of the result add up. Angles are the same after a full turn.
+Each step of a worked solution that prints a formula with its numbers is read back from the print and
+evaluated. It must give the printed value, up to what the rounding of the printed numbers can do: each number
+that may be rounded is moved by half of its last digit, alone, and the moves of the result add up. Angles are
+the same after a full turn.
 
-What cannot be told is never taken for proved: a step that words alone tell, a formula that holds what has no value,
-and numbers whose rounding moves the result by more than a tenth of it.
+What cannot be told is never taken for proved: a step that words alone tell, a formula that holds what has no
+value, and numbers whose rounding moves the result by more than a tenth of it.
 """
 
 from __future__ import annotations
@@ -56,13 +57,15 @@ def check_formulas(drawn: Sequence[Variant], report: CheckReport) -> None:
             elif not proof.holds and step.name not in failed:
                 failed.add(step.name)
                 report.fail(
-                    f"seed {variant.seed}: the printed formula of {step.name}, {step.formula}, with its numbers "
+                    f"seed {variant.seed}: the printed formula of {step.name}, {step.formula}, with "
+                    "its numbers "
                     f"{step.substitution or step.formula}, gives {proof.gives}; printed is {step.value}"
                 )
 
 
 def _why_not(variant: Variant, step: Step, proof: Proof) -> str:
-    """Why a step proves nothing; with what its code holds that no formula says, where that is why it prints none."""
+    """Why a step proves nothing; with what its code holds that no formula says, where that is why it prints
+    none."""
     function = variant.exercise.solution.graph.node(step.name).function
     unprinted = "" if step.formula or hasattr(function, "__formula__") else why_unprinted(function)
     return f"{proof.why_not}, since {unprinted}; @formula may say it" if unprinted else proof.why_not

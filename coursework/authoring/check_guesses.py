@@ -16,7 +16,8 @@ MOST = 0.5  #: of the points
 
 
 class Guess(NamedTuple):
-    """The best that one text a part, the same on every sheet, earns: its share of the points, and the texts by part."""
+    """The best that one text a part, the same on every sheet, earns: its share of the points, and the texts
+    by part."""
 
     share: float
     texts: dict[str, str]
@@ -25,7 +26,8 @@ class Guess(NamedTuple):
 def best_guess(drawn: Sequence[Variant]) -> Guess:
     """Return the best constant answer to the choices and counts of variants, each part by itself.
 
-    A choice is guessed by its letter. Equations in symbols, measured numbers and what a person marks are not guessed.
+    A choice is guessed by its letter. Equations in symbols, measured numbers and what a person marks are not
+    guessed.
     """
     guesses: dict[str, Counter[str]] = {}
     total = 0.0
@@ -61,5 +63,6 @@ def check_guesses(drawn: Sequence[Variant], report: CheckReport) -> None:
         answers = ", ".join(f"{part} = {text}" for part, text in guess.texts.items())
         report.fail(
             f"who writes the same on every sheet earns {100 * guess.share:.0f} % of the points, and at most "
-            f"{100 * MOST:.0f} % would do: {answers}; vary what is drawn, shuffle cases, or weigh less what is always the same"
+            f"{100 * MOST:.0f} % would do: {answers}; vary what is drawn, shuffle cases, or weigh less "
+            "what is always the same"
         )

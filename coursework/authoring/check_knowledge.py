@@ -1,4 +1,5 @@
-"""The promise that nobody earns without knowing: nothing follows from numbers that are written without work."""
+"""The promise that nobody earns without knowing: nothing follows from numbers that are written without
+work."""
 
 from __future__ import annotations
 
@@ -9,9 +10,11 @@ from coursework.course.variant import Variant
 from coursework.marking.marking import mark as grade
 
 TRIED = 3  #: variants that such students answer
-#: What is written in every box by students who know nothing; two more write the data in turn, and the questions' numbers.
+#: What is written in every box by students who know nothing; two more write the data in turn, and the
+#: questions' numbers.
 NUMBERS = (
-    "0 1 -1 2 -2 3 4 5 6 7 8 9 10 12 20 45 50 90 100 180 -90 270 0.5 -0.5 0.1 1e-9 -1e-9 1e-6 1e-3 1e3 1e6 1e9 "
+    "0 1 -1 2 -2 3 4 5 6 7 8 9 10 12 20 45 50 90 100 180 -90 270 0.5 -0.5 0.1 1e-9 -1e-9 1e-6 1e-3 1e3 "
+    "1e6 1e9 "
     "-1e9 1e12 3.14159 1.5708 57.2958 0.01"
 ).split()
 
@@ -45,5 +48,6 @@ def check_knowledge(drawn: Sequence[Variant], report: CheckReport) -> None:
                 mark = marking[i]
                 if mark.verdict == "follow_through" and mark.points:
                     report.fail(
-                        f"seed {variant.seed}: who writes {method} is paid for {i}, which follows from nothing"
+                        f"seed {variant.seed}: who writes {method} is paid for {i}, which follows from "
+                        "nothing"
                     )

@@ -15,7 +15,8 @@ from coursework.parsing.vocabulary import MAX_LENGTH
 
 
 def check_loops(variant: Variant, report: CheckReport) -> None:
-    """Check that the equations of the loops hold for the answers, are right in other forms, and that wrong links are named.
+    """Check that the equations of the loops hold for the answers, are right in other forms, and that wrong
+    links are named.
 
     An equation does not depend on the variant: one is enough.
     """

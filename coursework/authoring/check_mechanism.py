@@ -1,4 +1,5 @@
-"""The promises about a stated mechanism: one degree of freedom, loops that close, rates that are those of the solution."""
+"""The promises about a stated mechanism: one degree of freedom, loops that close, rates that are those of the
+solution."""
 
 from __future__ import annotations
 
@@ -36,13 +37,15 @@ def check_mechanism(drawn: Sequence[Variant], report: CheckReport) -> None:
     counted = counts(mechanism)
     if not counted.w == mechanism.mobility == 1:
         report.fail(
-            f"MECHANISM: {counted.n} bodies, {counted.b} pins and slides and {counted.h} gears leave {counted.w} degrees of "
+            f"MECHANISM: {counted.n} bodies, {counted.b} pins and slides and {counted.h} gears leave "
+            f"{counted.w} degrees of "
             "freedom; a driver moves 1"
         )
         return
     if bool(mechanism.pushed) != bool(exercise.spec.driver and exercise.spec.driver.jack):
         report.fail(
-            "MECHANISM: the slide of a jack and its length are stated together, Mechanism(pushed=…) and Driver(jack=…); "
+            "MECHANISM: the slide of a jack and its length are stated together, Mechanism(pushed=…) "
+            "and Driver(jack=…); "
             "found one alone"
         )
         return
@@ -85,7 +88,8 @@ def faults(variant: Variant) -> Iterator[str]:
 
 
 def _other_shifts(scene: Scene, stance: Stance, angle: float, size: float) -> Iterator[str]:
-    """Free bodies that go otherwise than their joints let them: their rates beside differences of their places."""
+    """Free bodies that go otherwise than their joints let them: their rates beside differences of their
+    places."""
     if not scene.linkage.free:
         return
     near = scene.pose(angle + _STEP * np.arange(-2, 3), by_joints=True)
@@ -97,7 +101,8 @@ def _other_shifts(scene: Scene, stance: Stance, angle: float, size: float) -> It
         if not abs(slope - stance.origin_rates[body, 0]) <= 1e-6 * size:
             name = scene.mechanism.names[body]
             yield (
-                f"body {name} goes otherwise than its slides let it: its origin by {slope * 1000:.4g} mm a radian of the "
+                f"body {name} goes otherwise than its slides let it: its origin by {slope * 1000:.4g} "
+                "mm a radian of the "
                 f"driver, its joints by {stance.origin_rates[body, 0] * 1000:.4g}"
             )
 
@@ -131,4 +136,6 @@ def _other_rates(variant: Variant, scene: Scene, stance: Stance) -> Iterator[str
         stated = exercise.solve(**variant.used, only=rate, effects=variant.effects)[rate]
         speed_found = float(stance.rates[number, 0]) * speed
         if not abs(speed_found - stated) <= _AGREES * largest:
-            yield f"body {body.name} turns at {speed_found:.6g} rad/s by its joints, and {rate} = {stated:.6g}"
+            yield (
+                f"body {body.name} turns at {speed_found:.6g} rad/s by its joints, and {rate} = {stated:.6g}"
+            )

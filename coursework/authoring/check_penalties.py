@@ -1,4 +1,5 @@
-"""The promise that one error has one price: a named mistake that is a usual error costs what that error costs anywhere."""
+"""The promise that one error has one price: a named mistake that is a usual error costs what that error costs
+anywhere."""
 
 from __future__ import annotations
 
@@ -20,7 +21,8 @@ _SAME = 1e-6  #: of a value, by which two ways to compute it may differ
 
 
 def check_prices(drawn: Sequence[Variant], report: CheckReport) -> None:
-    """Check that a named mistake is of the kind of the usual error that it is, unless it states a penalty of its own."""
+    """Check that a named mistake is of the kind of the usual error that it is, unless it states a penalty of
+    its own."""
     exercise = drawn[0].exercise
     for name, mistake in exercise.solution.mistakes.items():
         kinds = set(usual_kinds(exercise, name, drawn))
@@ -30,14 +32,17 @@ def check_prices(drawn: Sequence[Variant], report: CheckReport) -> None:
             if PENALTIES[mistake.kind] not in prices:
                 kind = min(kinds, key=list(PENALTIES).index)
                 report.fail(
-                    f"mistake {name} is an error of the kind {kind!r}, which leaves {PENALTIES[kind]:g} of the points, "
-                    f"and is said to be of the kind {mistake.kind!r}, which leaves {PENALTIES[mistake.kind]:g}: "
+                    f"mistake {name} is an error of the kind {kind!r}, which leaves "
+                    f"{PENALTIES[kind]:g} of the points, "
+                    f"and is said to be of the kind {mistake.kind!r}, which leaves "
+                    f"{PENALTIES[mistake.kind]:g}: "
                     f"@mistake(…, kind={kind!r}), or share=… where it is to differ"
                 )
 
 
 def usual_kinds(exercise: CourseExercise, mistake: str, drawn: Sequence[Variant]) -> Iterator[str]:
-    """Yield the kinds of usual errors that give what a named mistake gives, of the first quantity that it is about."""
+    """Yield the kinds of usual errors that give what a named mistake gives, of the first quantity that it is
+    about."""
     solution = exercise.solution
     target = solution.mistakes[mistake].targets[0]
     given = given_columns(exercise, drawn)

@@ -133,7 +133,8 @@ def notes(reports: Sequence[CheckReport]) -> list[str]:
         median, largest = r.conditioning
         if math.isfinite(median):
             sentences.append(
-                f"rounding takes {100 * median:.0f} % of what a variant may have, {100 * largest:.0f} % at most"
+                f"rounding takes {100 * median:.0f} % of what a variant may have, {100 * largest:.0f} "
+                "% at most"
             )
         for name, cases in r.cases.items():
             if len(cases) == 1 and cases.total() < r.variants:

@@ -1,6 +1,8 @@
-"""The promises about usual errors: one that shows is never right and is told; what nothing protects is listed.
+"""The promises about usual errors: one that shows is never right and is told; what nothing protects is
+listed.
 
-Errors are made as the engine makes them, in the formula of each asked number, and handed in as students write them.
+Errors are made as the engine makes them, in the formula of each asked number, and handed in as students write
+them.
 """
 
 from __future__ import annotations
@@ -27,7 +29,8 @@ DIGITS = 5  #: significant digits of an answer
 
 
 def check_usual_errors(drawn: Sequence[Variant], report: CheckReport) -> None:
-    """Each error that shows is told by its kind, or as one of several; some on each variant, all over many."""
+    """Each error that shows is told by its kind, or as one of several; some on each variant, all over
+    many."""
     for number, variant in enumerate(drawn[:TRIED]):
         spellings = {part.id: list(_own_errors(part, variant.key)) for part in variant.parts}
         parts = {part.id: part for part in variant.parts}
@@ -71,7 +74,8 @@ def _count_verdict(variant: Variant, part: Part, error: UsualError, mark: Any, r
 
 
 def _list_unprotected(variant: Variant, report: CheckReport) -> None:
-    """Add the asked numbers that a weighty error may leave right on some variants, and those of which none is made."""
+    """Add the asked numbers that a weighty error may leave right on some variants, and those of which none is
+    made."""
     exercise = variant.exercise
     for demand, share in protection(exercise, None).unprotected.items():
         if demand.error.kind in WEIGHTY:

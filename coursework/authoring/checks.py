@@ -61,8 +61,8 @@ NONSENSICAL = 20  #: variants that are answered by nonsense; it is read alike on
 def check(
     exercise: CourseExercise, variants: int, *, rendered: int = RENDERED, submit: Submit | None = None
 ) -> CheckReport:
-    """Try every promise on the variants of seeds 0, 1, …; other processes answer some of the variants if ``submit`` sends
-    calls to them.
+    """Try every promise on the variants of seeds 0, 1, …; other processes answer some of the variants if
+    ``submit`` sends calls to them.
 
     Whatever breaks is reported, and the rest is tried all the same, unless no variant has an answer.
     """
@@ -79,7 +79,8 @@ def check(
 
 
 def _try(report: CheckReport, step: Callable[..., None], *arguments: Any) -> bool:
-    """Return whether a check came to its end; report what stopped it, perhaps an author's slip in a function of the course."""
+    """Return whether a check came to its end; report what stopped it, perhaps an author's slip in a function
+    of the course."""
     try:
         step(*arguments, report)
     except _NotAnswered:
@@ -105,8 +106,8 @@ def _problem(fault: Exception) -> str:
 def check_all(
     course: Course, names: Sequence[str], variants: int, progress: Callable[[], None] = lambda: None
 ) -> list[CheckReport]:
-    """Return a report an exercise, in this order, made by as many processes as there are processors: they share the
-    exercises, or the variants of each if there are few exercises."""
+    """Return a report an exercise, in this order, made by as many processes as there are processors: they
+    share the exercises, or the variants of each if there are few exercises."""
     count = workers(variants, _WORTH_PROCESSES)
     if count < 2:
         return [_with_progress(_check_one(course, name, variants), progress) for name in names]
@@ -214,7 +215,8 @@ def _answered_elsewhere(root: str, name: str, seeds: Sequence[int]) -> CheckRepo
 
 
 def _answers_tried(name: str, drawn: Sequence[Variant]) -> CheckReport:
-    """Return the report on the answers to some variants; a check that cannot go on leaves the others to do so."""
+    """Return the report on the answers to some variants; a check that cannot go on leaves the others to do
+    so."""
     report = CheckReport(name)
     left = [check_solves, check_right_answers, check_mistakes, check_slips, check_follow_through]
     for variant in drawn:
@@ -261,14 +263,16 @@ def check_texts(exercise: CourseExercise, report: CheckReport) -> None:
     """Every language says every part, every case and every mistake, and nothing is written in vain."""
     for lang, path in exercise.texts.unspoken.items():
         report.fail(
-            f"{path.relative_to(exercise.folder.root).as_posix()} is read by nothing: the engine speaks no {lang!r}, "
+            f"{path.relative_to(exercise.folder.root).as_posix()} is read by nothing: the engine "
+            f"speaks no {lang!r}, "
             f"whose words would be {file_of(lang)}"
         )
     for lang in exercise.folder.languages:
         words(lang)  # a file of words that cannot be used says so here
         if lang not in exercise.languages:
             report.fail(
-                f"no statement in {lang!r}: {exercise.folder.relative(exercise.texts.file('exercises', lang))} is missing"
+                f"no statement in {lang!r}: "
+                f"{exercise.folder.relative(exercise.texts.file('exercises', lang))} is missing"
             )
             continue
         if exercise.folder.lacks_title(lang):
@@ -366,7 +370,8 @@ def check_symbols(exercise: CourseExercise, report: CheckReport) -> None:
         stated = name in exercise.spec.symbols
         if name in on_the_sheet and not stated and symbol != exercise.symbol(name):
             report.fail(
-                f"SYMBOLS of {exercise.solution.source} names {name!r}, which is given or asked: its symbol belongs "
+                f"SYMBOLS of {exercise.solution.source} names {name!r}, which is given or asked: its "
+                "symbol belongs "
                 f"in Exercise(symbols=…), else the sheet shows it as {exercise.symbol(name)}"
             )
 
@@ -393,8 +398,8 @@ def _is_orientation(exercise: CourseExercise, name: str) -> bool:
 
 
 def agrees(value: Any, expected: Any, *, is_angle: bool = False) -> bool:
-    """Return whether a value agrees with a known one: with a printed text to its last digit, with a number or a vector
-    to 1e-9 relative."""
+    """Return whether a value agrees with a known one: with a printed text to its last digit, with a number or
+    a vector to 1e-9 relative."""
     if isinstance(value, str):
         return value == expected
     if isinstance(expected, str):
@@ -430,7 +435,8 @@ def check_solves(variant: Variant, key: Key, report: CheckReport) -> None:
         value = key.reference[part.quantity]
         if part.sort.is_number and part.has_margin and part.atol == 0 and value == 0:
             report.fail(
-                f"seed {variant.seed}: {part.id} is 0 and has no absolute tolerance: state Part({part.id!r}, atol=…), or a "
+                f"seed {variant.seed}: {part.id} is 0 and has no absolute tolerance: state "
+                f"Part({part.id!r}, atol=…), or a "
                 "constraint that refuses such a draw"
             )
     for number, (value, size) in enumerate(_residuals(variant), start=1):
@@ -440,8 +446,9 @@ def check_solves(variant: Variant, key: Key, report: CheckReport) -> None:
 
 
 def _residuals(variant: Variant) -> Iterator[tuple[float, float]]:
-    """Yield the largest value of each governing equation, and the size of its terms: the sum of what each number in it
-    contributes, by the change of the equation with that number; 1 where no number contributes, or the equation is divided by it."""
+    """Yield the largest value of each governing equation, and the size of its terms: the sum of what each
+    number in it contributes, by the change of the equation with that number; 1 where no number contributes,
+    or the equation is divided by it."""
     graph = variant.exercise.solution.residual_graph
     found = graph.everything(("residual",), variant.used, variant.effects, variant.computed)
     if isinstance(found["residual"], RelativeGaps):

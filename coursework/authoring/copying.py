@@ -1,4 +1,5 @@
-"""A copy of an exercise with all that it needs: modules that it imports, texts that it includes, files that it reads."""
+"""A copy of an exercise with all that it needs: modules that it imports, texts that it includes, files that
+it reads."""
 
 from __future__ import annotations
 
@@ -38,16 +39,17 @@ class Copied(NamedTuple):
 def copy_exercise(source: Folder, name: str, target: Path, renamed: str, langs: Collection[str]) -> Copied:
     """Copy an exercise of a course into a course folder, which is made if need be; nothing there is replaced.
 
-    Files keep their places in topics, so that imports keep working. A module of another exercise that this one imports
-    is copied as a shared one, its name after an underscore. ``langs`` are the languages of a folder that is made.
+    Files keep their places in topics, so that imports keep working. A module of another exercise that this
+    one imports is copied as a shared one, its name after an underscore. ``langs`` are the languages of a
+    folder that is made.
 
     Raises
     ------
     UnknownName
         There is no such exercise.
     BadInput
-        The new name cannot be a module's or is taken, a file of another content stands in the way, or no text is in a
-        language of the course.
+        The new name cannot be a module's or is taken, a file of another content stands in the way, or no text
+        is in a language of the course.
     """
     if name not in source.names:
         raise unknown("exercise", name, source.names, source.label)
@@ -72,7 +74,8 @@ def copy_exercise(source: Folder, name: str, target: Path, renamed: str, langs: 
             more = f" (and {counted(len(there) - 1, 'file')} more)" if len(there) > 1 else ""
             raise BadInput(
                 (
-                    "{path}{more} exists already, and differs from what {name} needs; copy the exercise into another "
+                    "{path}{more} exists already, and differs from what {name} needs; copy the "
+                    "exercise into another "
                     "folder"
                 ),
                 path=path,

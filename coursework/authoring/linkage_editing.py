@@ -25,7 +25,8 @@ class CheckBox(NamedTuple):
 
 
 def lengths(text: str, made: CompiledLinkage) -> list[CheckBox]:
-    """Return the given lengths that a line of the text states by numbers, and whether they vary; one that drives is none of them."""
+    """Return the given lengths that a line of the text states by numbers, and whether they vary; one that
+    drives is none of them."""
     found = []
     for name, entry in made.linkage.given.items():
         if entry.unit == "mm" and name != made.linkage.moved:
@@ -36,7 +37,8 @@ def lengths(text: str, made: CompiledLinkage) -> list[CheckBox]:
 
 
 def with_lengths(text: str, known: Collection[str], varying: Collection[str]) -> str:
-    """Return the text with some lengths in ranges around their values and the other ones fixed in the middle of theirs.
+    """Return the text with some lengths in ranges around their values and the other ones fixed in the middle
+    of theirs.
 
     Parameters
     ----------
@@ -73,7 +75,8 @@ def _middle(match: re.Match[str]) -> str:
 
 
 def with_titles(text: str, titles: Sequence[tuple[str, str]]) -> str:
-    """Return the text with other titles, by language, in place of the line that states them; without any as it is."""
+    """Return the text with other titles, by language, in place of the line that states them; without any as
+    it is."""
     stated = {lang: title for lang, title in titles if title}
     if not stated:
         return text
@@ -136,9 +139,8 @@ def with_questions(text: str, made: CompiledLinkage, chosen: Collection[str]) ->
         Questions as ``key name``: those of :func:`questions`.
 
     Returns
-    -------
-    The text, with a new table ``[ask]`` in the order of the one before; what no check box says, such as loads, weights and single
-    coordinates, stays.
+    ------- The text, with a new table ``[ask]`` in the order of the one before; what no check box says, such
+      as loads, weights and single coordinates, stays.
     """
     asked = made.linkage.ask
     able = {key: [box.name for box in boxes] for key, boxes in questions(made).items()}
@@ -170,7 +172,8 @@ def _box(made: CompiledLinkage, question: str, able: Mapping[str, Sequence[str]]
 
 
 def _parted(text: str) -> tuple[str, str]:
-    """Return the text before the table of questions and the text after it, with the comments that stand above what follows."""
+    """Return the text before the table of questions and the text after it, with the comments that stand above
+    what follows."""
     lines, headings = text.split("\n"), []
     for number, line in enumerate(lines):
         if heading := re.match(r"\s*\[\[?\s*([\w.-]+)\s*\]", line):

@@ -83,7 +83,8 @@ def _written(folder: Path, name: str, text: str, langs: Collection[str]) -> list
 def mechanism_alone(
     path: Path, opened: Callable[[Path], Any]
 ) -> Iterator[tuple[CourseExercise[Any], CompiledLinkage]]:
-    """Provide the exercise of a mechanism's file that stands in no course; one that asks nothing is asked its mobility.
+    """Provide the exercise of a mechanism's file that stands in no course; one that asks nothing is asked its
+    mobility.
 
     Parameters
     ----------
@@ -262,7 +263,8 @@ def from_pylinkage(path: Path) -> str:
 
 
 class _Imported:
-    """Linkage of pylinkage on its way to a mechanism's file; its units are taken for centimetres, times ten."""
+    """Linkage of pylinkage on its way to a mechanism's file; its units are taken for centimetres, times
+    ten."""
 
     def __init__(self, path: Path, name: str, joints: Mapping[str, Mapping[str, Any]]) -> None:
         self.path, self.name, self.joints = path, name, joints
@@ -284,9 +286,18 @@ class _Imported:
                 count=len([b for b in self.bodies if "theta2" in b]),
             )
         lines = [
-            f'title = {{ fr = "{self.name}", en = "{self.name}" }}', "", "[given]", *self.given, 'omega2 = "10 rad/s"', "", "[ground]",
-            *self.ground, "", "[bodies]", *self.bodies,
-        ]  # fmt: skip
+            f'title = {{ fr = "{self.name}", en = "{self.name}" }}',
+            "",
+            "[given]",
+            *self.given,
+            'omega2 = "10 rad/s"',
+            "",
+            "[ground]",
+            *self.ground,
+            "",
+            "[bodies]",
+            *self.bodies,
+        ]
         if self.sides:
             lines += ["", "[assembly]", *self.sides]
         asked = [
@@ -303,8 +314,14 @@ class _Imported:
             return
         if kind not in ("Static", "Crank", "Fixed", "Revolute", "Pivot"):
             known = ("Static", "Crank", "Fixed", "Revolute")
-            raise BadInput("{file}: joint {name} is of type {kind}{near}; there are {known}", file=self.path, name=name, kind=kind,
-                           near=nearest(kind, known), known=", ".join(known))  # fmt: skip
+            raise BadInput(
+                "{file}: joint {name} is of type {kind}{near}; there are {known}",
+                file=self.path,
+                name=name,
+                kind=kind,
+                near=nearest(kind, known),
+                known=", ".join(known),
+            )
         ends = [self._reference(joint, key) for key in ("joint0", "joint1")]
         point = self.points[name] = self._letter()
         self.places[point] = complex(float(joint.get("x") or 0.0), float(joint.get("y") or 0.0)) * 10
@@ -323,7 +340,8 @@ class _Imported:
         return letters[used % len(letters)] + (str(used // len(letters) + 1) if used >= len(letters) else "")
 
     def _reference(self, joint: Mapping[str, Any], key: str) -> str:
-        """Return the letter of a joint that another hangs on; one that stands inline becomes a point of the ground."""
+        """Return the letter of a joint that another hangs on; one that stands inline becomes a point of the
+        ground."""
         value = joint.get(key)
         if value is None:
             return ""
@@ -386,8 +404,11 @@ class _Imported:
                 return
         raise BadInput(
             "{file}: joint {name} is fixed to {start} and {end}, which are not the ends of one bar",
-            file=self.path, name=point, start=start, end=end,
-        )  # fmt: skip
+            file=self.path,
+            name=point,
+            start=start,
+            end=end,
+        )
 
 
 def new_from_pylinkage(folder: Path, path: Path, name: str, langs: Collection[str]) -> list[Path]:

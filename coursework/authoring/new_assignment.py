@@ -24,8 +24,9 @@ def new_assignment(
 ) -> Path:
     """Write an assignment of some exercises; gives the file.
 
-    Its sheets are in ``langs``; unless told, in the language ``around`` where all its exercises speak it, else in the course's
-    own. Its titles stand in every language of the exercises, for students whose line of the roster says another.
+    Its sheets are in ``langs``; unless told, in the language ``around`` where all its exercises speak it,
+    else in the course's own. Its titles stand in every language of the exercises, for students whose line of
+    the roster says another.
 
     Raises
     ------
@@ -64,27 +65,29 @@ def _head(stem: str, course: Course[Any], sheets: Sequence[str], langs: Sequence
     texts = {lang: words(lang)["assignment"] for lang in langs}
     comments = words(language_of_messages())["assignment"]["comments"]
     title = _texts({lang: f"{s['title']} ({stem})" for lang, s in texts.items()})
-    return "\n".join([
-        f"title = {title}",
-        f"course = {_texts({lang: course.folder.title(lang) for lang in langs})}",
-        "# date = 2026-12-04",
-        '# duration = "1 h 30"',
-        f"# instructions = {_texts({lang: s['instructions'] for lang, s in texts.items()})}",
-        "# cover = true",
-        f"# rules = true         # {comments['rules']}",
-        f"# work = 60            # {comments['work']}",
-        f"# anonymous = true     # {comments['anonymous']}",
-        f"# attendance = true    # {comments['attendance']}",
-        "mark = { of = 20, step = 0.5 }",
-        f'versions = "each"      # {comments["versions"]}',
-        f'# identity = ["number", "group"]      # {comments["identity"]}',
-        '# roster = "class.csv"',
-        f'lang = "{",".join(sheets)}"',
-        f'out = "{stem}"',
-        *(f"# {texts[lang]['secret_line']}" for lang in langs),
-        f'secret = "{Secret.new().text}"',
-        "",
-    ])  # fmt: skip
+    return "\n".join(
+        [
+            f"title = {title}",
+            f"course = {_texts({lang: course.folder.title(lang) for lang in langs})}",
+            "# date = 2026-12-04",
+            '# duration = "1 h 30"',
+            f"# instructions = {_texts({lang: s['instructions'] for lang, s in texts.items()})}",
+            "# cover = true",
+            f"# rules = true         # {comments['rules']}",
+            f"# work = 60            # {comments['work']}",
+            f"# anonymous = true     # {comments['anonymous']}",
+            f"# attendance = true    # {comments['attendance']}",
+            "mark = { of = 20, step = 0.5 }",
+            f'versions = "each"      # {comments["versions"]}',
+            f'# identity = ["number", "group"]      # {comments["identity"]}',
+            '# roster = "class.csv"',
+            f'lang = "{",".join(sheets)}"',
+            f'out = "{stem}"',
+            *(f"# {texts[lang]['secret_line']}" for lang in langs),
+            f'secret = "{Secret.new().text}"',
+            "",
+        ]
+    )
 
 
 def toml_of(table: Mapping[str, Any]) -> str:

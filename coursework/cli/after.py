@@ -64,7 +64,8 @@ def _several(name: str, metavar: str, **more: Any) -> Callable[[Any], Any]:
 @_several(
     "--weight",
     "QUESTIONS=POINTS",
-    help="Give a question, such as 2.3, other points; or all of an exercise, such as 2, or of a kind, such as angle.",
+    help="Give a question, such as 2.3, other points; or all of an exercise, such as 2, or of a kind, such "
+    "as angle.",
 )
 @_several("--neutralise", "QUESTIONS", help="Let questions count for nobody.")
 @_several("--spare", "QUESTIONS", help="Let questions count only for those whose mark they do not lower.")
@@ -73,7 +74,8 @@ def _several(name: str, metavar: str, **more: Any) -> Callable[[Any], Any]:
 @_several(
     "--refuse",
     "QUESTIONS[=ANSWER]",
-    help="Give no points to an answer that waits, whoever wrote it; without ANSWER to all that wait in the questions.",
+    help="Give no points to an answer that waits, whoever wrote it; without ANSWER to all that wait in the "
+    "questions.",
 )
 @_several("--tolerance", "QUESTIONS=FACTOR", help="Widen the accepted margin of questions: 2 doubles it.")
 @click.option("--digits", type=int, help="Make all margins as wide as so many digits kept on the way cost.")
@@ -99,7 +101,8 @@ def _several(name: str, metavar: str, **more: Any) -> Callable[[Any], Any]:
     is_flag=False,
     flag_value="last",
     metavar="[ID…]",
-    help="Take decisions back, by the ids that stand before them, or the last; with --put-away what was put away.",
+    help="Take decisions back, by the ids that stand before them, or the last; with --put-away what was put "
+    "away.",
 )
 @click.option(
     "--undo-since",
@@ -134,9 +137,10 @@ def after(
 ) -> int:
     """Show what is left before the marks of an exam may go out, and change what its questions count.
 
-    Without a change it lists the waiting answers, patterns that a person should look at, and every question with a proposal. A
-    change is previewed: who goes from which mark to which. --yes confirms it: it is a dated line of decisions.csv, or of the database,
-    that every later grade applies, and --undo or --undo-since takes it back, whatever was decided since.
+    Without a change it lists the waiting answers, patterns that a person should look at, and every question
+    with a proposal. A change is previewed: who goes from which mark to which. --yes confirms it: it is a
+    dated line of decisions.csv, or of the database, that every later grade applies, and --undo or
+    --undo-since takes it back, whatever was decided since.
     """
     from coursework.gradebook.after import restated as restated_of
     from coursework.gradebook.after import undoing

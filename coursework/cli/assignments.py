@@ -125,7 +125,8 @@ def build_papers(context: click.Context, exercises: Sequence[str]) -> None:
         if not {"pdf", "booklet"} & {*formats}:
             raise BadInput(
                 (
-                    "scan adds answer pages to PDFs, but none is written (--formats {formats}): add pdf, or --with "
+                    "scan adds answer pages to PDFs, but none is written (--formats {formats}): add "
+                    "pdf, or --with "
                     "booklet"
                 ),
                 formats=",".join(formats),
@@ -146,7 +147,8 @@ def build_papers(context: click.Context, exercises: Sequence[str]) -> None:
         for option in ("seed", "parts", "given"):
             if settings.is_given(option):
                 warn(
-                    "note: --{option} is for exercises named one by one, and is not used: the file of an assignment states its parts "
+                    "note: --{option} is for exercises named one by one, and is not used: the file of "
+                    "an assignment states its parts "
                     "and given values, and its secret draws the variants",
                     option=option,
                 )
@@ -290,7 +292,8 @@ def _issued_exercises(
     if with_language and settings.is_given("langs"):
         notes.append(
             Message(
-                "the roster states the language of {some} of its {students}, which counts; --lang {langs} is for the others",
+                "the roster states the language of {some} of its {students}, which counts; --lang "
+                "{langs} is for the others",
                 some=with_language,
                 students=counted(len(students), "student"),
                 langs=",".join(langs),
@@ -369,8 +372,8 @@ def write_build(
     overwrite: bool = False,
     store: Callable[[Mapping[str, Any]], None] = lambda content: None,
 ) -> tuple[int, bool]:
-    """Write the files of a build; return their number, and whether the record is what it was ``before``. ``store`` is handed what
-    ``issued.json`` says, before anything is written."""
+    """Write the files of a build; return their number, and whether the record is what it was ``before``.
+    ``store`` is handed what ``issued.json`` says, before anything is written."""
     from coursework.issuing.build import files
     from coursework.issuing.issued import LIFTED, issued_content
     from coursework.issuing.letters import unprinted_names
@@ -384,7 +387,8 @@ def write_build(
     if before is not None and assignment is None and not _goes_on(before, json.loads(text)):
         raise BadInput(
             (
-                "{before} contains other variants that were issued before; choose another --out, or --overwrite to "
+                "{before} contains other variants that were issued before; choose another --out, or "
+                "--overwrite to "
                 "replace them (files that were filled in or changed are kept under other names)"
             ),
             before=record,

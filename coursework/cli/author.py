@@ -99,7 +99,8 @@ def check(
 @click.option(
     "--linkage",
     metavar="NAME",
-    help="Start from a mechanism's file, without any Python: four_bar, slider_crank, slotted_lever and others.",
+    help="Start from a mechanism's file, without any Python: four_bar, slider_crank, slotted_lever and "
+    "others.",
 )
 @click.option(
     "--from-pylinkage",

@@ -37,7 +37,8 @@ _TOLD = 10  #: lines that are told, of however many
 
 
 def store_at(context: click.Context, url: str, *, new: bool = False) -> Store:
-    """Return a database, let go of when the command ends; a file that is not there is made where it may be ``new``.
+    """Return a database, let go of when the command ends; a file that is not there is made where it may be
+    ``new``.
 
     Raises
     ------
@@ -102,7 +103,8 @@ def grade_stored(
     replaces: bool,
     writer: Callable[[Gradebook, Path], int],
 ) -> int:
-    """Keep what is new, mark what changed, and write the files where a folder is named; ``writer`` says what is in them."""
+    """Keep what is new, mark what changed, and write the files where a folder is named; ``writer`` says what
+    is in them."""
     course = opened(context)
     store = store_at(context, url, new=issued is not None)
     from coursework.database.assignments import assignment_called, name_of, put_issued
@@ -214,7 +216,8 @@ def written_marks(context: click.Context, url: str, name: str, folder: Path, dec
     if work.changed:
         print_notes(
             [
-                f"{counted(len(work.changed), 'sheet')} came or changed since: coursework grade --db … marks them"
+                f"{counted(len(work.changed), 'sheet')} came or changed since: coursework grade --db … "
+                "marks them"
             ]
         )
     write_standing(course, store, work, folder, feedback=False, spreadsheet=SPREADSHEETS[decimal])
@@ -368,7 +371,8 @@ def sign_out(context: click.Context, url: str, login: str | None) -> None:
 @click.argument("folder", metavar="DIR", type=FilePath(path_type=Path, file_okay=False))
 @click.pass_context
 def dump(context: click.Context, url: str, folder: Path) -> None:
-    """Write a database into the folder DIR as CSV files, one for each table; 'restore' reads them into any database."""
+    """Write a database into the folder DIR as CSV files, one for each table; 'restore' reads them into any
+    database."""
     store = store_at(context, url)
     from coursework.database.dump import dump as dump_to
 

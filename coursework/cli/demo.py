@@ -144,8 +144,17 @@ HABITS: tuple[Habit, ...] = (
 
 
 SHOWN_VERDICTS = (
-    "correct", "follow_through", "mistake", "slip", "partial", "wrong", "wrong_unit", "unreadable", "to_mark", "missing",
-)  # fmt: skip
+    "correct",
+    "follow_through",
+    "mistake",
+    "slip",
+    "partial",
+    "wrong",
+    "wrong_unit",
+    "unreadable",
+    "to_mark",
+    "missing",
+)
 
 
 def class_of_twelve(

@@ -1,6 +1,8 @@
-"""A site to look at: the class of twelve, what it handed in and how it was marked, and what is open to it now.
+"""A site to look at: the class of twelve, what it handed in and how it was marked, and what is open to it
+now.
 
-The same each time: variants depend on the names of students and a key that is no secret, and times are written here.
+The same each time: variants depend on the names of students and a key that is no secret, and times are
+written here.
 """
 
 from __future__ import annotations

@@ -80,9 +80,10 @@ def gradebook(
 ) -> int:
     """Write the marks of the folder MARKS, made by grade, into a platform's own export of its gradebook.
 
-    Only one column changes; all else keeps its bytes. Students are matched by e-mail address or number, then by name. Students who are
-    not in the export are listed and not added; students without marks are listed and stay as they are. A mark is provisional while
-    an answer waits for a person: it is named, and left out unless --provisional is given.
+    Only one column changes; all else keeps its bytes. Students are matched by e-mail address or number, then
+    by name. Students who are not in the export are listed and not added; students without marks are listed
+    and stay as they are. A mark is provisional while an answer waits for a person: it is named, and left out
+    unless --provisional is given.
     """
     from coursework.gradebook.class_points import class_points
     from coursework.gradebook.platform_gradebooks import platform_gradebook
@@ -117,8 +118,8 @@ def gradebook(
 
 
 def _final(scored: Sequence[Scored], provisional: bool) -> tuple[Sequence[Scored], int]:
-    """Return the marks to write, and the status: name those that are provisional, and leave them out unless they are
-    wanted."""
+    """Return the marks to write, and the status: name those that are provisional, and leave them out unless
+    they are wanted."""
     waiting = [entry.name for entry in scored if entry.open]
     if not waiting:
         return scored, DONE

@@ -85,13 +85,21 @@ def lti() -> None:
 @click.option("--check", is_flag=True, help="Ask each platform for its keys and for a token.")
 @json_option
 def platform(
-    kind: str | None, site: str | None, folder: Path, client_id: str | None, deployments: Sequence[str], url: str | None, name: str,
-    check: bool, as_json: bool, **addresses: str | None,
-) -> int:  # fmt: skip
+    kind: str | None,
+    site: str | None,
+    folder: Path,
+    client_id: str | None,
+    deployments: Sequence[str],
+    url: str | None,
+    name: str,
+    check: bool,
+    as_json: bool,
+    **addresses: str | None,
+) -> int:
     """Register a platform, or list the registered ones.
 
-    First, without --client-id, the command prints the values for the platform's registration page; the platform then shows the
-    client ID and the deployment ID.
+    First, without --client-id, the command prints the values for the platform's registration page; the
+    platform then shows the client ID and the deployment ID.
     """
     from dataclasses import replace
 
@@ -186,12 +194,14 @@ def _tell_registration(settings: Settings, kind: str) -> None:
     for label, value in rows:
         click.echo(f"  {localised(label):<38}{localised(value)}")
     say(
-        "It then shows a client ID and a deployment ID: coursework lti platform {kind} … --client-id ID --deployment ID",
+        "It then shows a client ID and a deployment ID: coursework lti platform {kind} … --client-id "
+        "ID --deployment ID",
         kind=kind,
     )
     if not settings.url:
         warn(
-            "note: state its address with --url https://exercises.example.org/lti: that of the site, with /lti behind it"
+            "note: state its address with --url https://exercises.example.org/lti: that of the site, "
+            "with /lti behind it"
         )
 
 
@@ -260,8 +270,8 @@ def _checked(settings: Settings, registered: LTIPlatform) -> str:
 def keys(action: str, kid: str | None, folder: Path, as_json: bool) -> None:
     """Create, list, rotate or retire the keys of the tool.
 
-    'rotate' creates a key that signs from now on. The one before stays public, since platforms cache keys, until 'retire KID'
-    removes it.
+    'rotate' creates a key that signs from now on. The one before stays public, since platforms cache keys,
+    until 'retire KID' removes it.
     """
     from coursework.platforms.lti.keys import KeyFolder
 
@@ -366,7 +376,8 @@ def _send(folder: Path, storage: Storage) -> None:
 def roster(context: click.Context, course_title: str | None, folder: Path, db: str, out: Path | None) -> None:
     """Write the class list of a platform as a CSV for 'build --roster'.
 
-    COURSE is the title of the course, or its beginning; without it, the courses that were opened from a platform are listed.
+    COURSE is the title of the course, or its beginning; without it, the courses that were opened from a
+    platform are listed.
     """
     import httpx
 

@@ -88,7 +88,8 @@ from coursework.system.limits import MOST_VARIANTS
 @click.option(
     "--dry-run",
     is_flag=True,
-    help="Write nothing; print how many pages, how white, for how many points, and how many variants are left.",
+    help="Write nothing; print how many pages, how white, for how many points, and how many variants are "
+    "left.",
 )
 @db_option
 @cluster_option
@@ -96,8 +97,8 @@ from coursework.system.limits import MOST_VARIANTS
 def build(context: click.Context, /, exercises: Sequence[str], **options: Any) -> None:
     """Write sheets, notebooks and pages for a class, with solutions and key for the staff.
 
-    With exercises, each is a paper of its own; with the file of an assignment, such as midterm.toml, one paper has several
-    exercises.
+    With exercises, each is a paper of its own; with the file of an assignment, such as midterm.toml, one
+    paper has several exercises.
     """
     build_papers(context, exercises)
 

@@ -75,7 +75,8 @@ if TYPE_CHECKING:
     "--with-solutions",
     is_flag=True,
     help=(
-        "Add the worked solution of the student's own variant to the feedback sheet. If the assignment states "
+        "Add the worked solution of the student's own variant to the feedback sheet. If the assignment "
+        "states "
         "solutions_after, the solution appears from that day on and never before."
     ),
 )
@@ -97,7 +98,8 @@ if TYPE_CHECKING:
     "--carry",
     metavar="COLUMN,COLUMN",
     help=(
-        "Columns of the roster that summary.csv repeats, such as number,group; by default those of the assignment, else "
+        "Columns of the roster that summary.csv repeats, such as number,group; by default those of the "
+        "assignment, else "
         "all but birth, health and extra time."
     ),
 )
@@ -105,7 +107,8 @@ if TYPE_CHECKING:
     "--names",
     is_flag=True,
     help=(
-        "Lift the anonymity of the assignment for good: names take the place of codes in what is written from now on. "
+        "Lift the anonymity of the assignment for good: names take the place of codes in what is "
+        "written from now on. "
         "Refused as long as an answer waits."
     ),
 )
@@ -142,10 +145,12 @@ def grade(
 ) -> int:
     """Mark answers in CSV, JSON, Parquet and notebooks, files or folders of them.
 
-    Exports of platforms are read as they are: the Responses report of a Moodle quiz, Canvas's Student Analysis, QTI results,
-    and the folders of nbgrader, Moodle and Canvas. A second run lists what changed and for whom.
+    Exports of platforms are read as they are: the Responses report of a Moodle quiz, Canvas's Student
+    Analysis, QTI results, and the folders of nbgrader, Moodle and Canvas. A second run lists what changed and
+    for whom.
 
-    With --db the answers are added to a database; only new or changed sheets are marked, and files are written only with --out.
+    With --db the answers are added to a database; only new or changed sheets are marked, and files are
+    written only with --out.
     """
     if any(path.suffix.lower() == ".parquet" for path in submissions):
         libraries(("pyarrow",), "Parquet needs", "parquet")
@@ -251,7 +256,8 @@ def _print_gradebook(book: Gradebook, out: Path) -> int:
         )
     if book.waiting:
         say(
-            "{count} answer{count:|s} wait{count:s|} to be marked by a person: give points in {file}, and grade again",
+            "{count} answer{count:|s} wait{count:s|} to be marked by a person: give points in {file}, "
+            "and grade again",
             count=book.waiting,
             file=out / "decisions.csv",
         )
@@ -272,7 +278,8 @@ def _check_source(
     if marks is not None and in_database:
         raise BadInput(
             (
-                "--from takes the marks in {marks}, and --db those of the database, where decisions.csv changes "
+                "--from takes the marks in {marks}, and --db those of the database, where "
+                "decisions.csv changes "
                 "marks: use one of them"
             ),
             marks=marks,
@@ -282,14 +289,16 @@ def _check_source(
     if marks is not None and submissions:
         raise BadInput(
             (
-                "--from takes the marks in {marks} as they are: omit SUBMISSIONS, or omit --from to mark them again"
+                "--from takes the marks in {marks} as they are: omit SUBMISSIONS, or omit --from to "
+                "mark them again"
             ),
             marks=marks,
         )
     if marks is not None and accepted is not None:
         raise BadInput(
             (
-                "--from takes the marks in {marks} as they are: edit them there, or omit --from to accept answers"
+                "--from takes the marks in {marks} as they are: edit them there, or omit --from to "
+                "accept answers"
             ),
             marks=marks,
         )
@@ -397,7 +406,8 @@ def report(
     cluster: str | None,
     as_json: bool,
 ) -> None:
-    """Write a report on a class from the folder DIR of grade, or from a database: a page (HTML, PDF) and tables.
+    """Write a report on a class from the folder DIR of grade, or from a database: a page (HTML, PDF) and
+    tables.
 
     With --json and without --out nothing is written.
     """
@@ -434,7 +444,8 @@ def _report(
     if unlike := unlike_summary(folder, marks):
         path = folder / "marks.csv"
         warn(
-            "note: {students} with other points in {path} than in summary.csv ({names}): the report is of {path}; "
+            "note: {students} with other points in {path} than in summary.csv ({names}): the report is "
+            "of {path}; "
             "'coursework grade --issued … --from {path}' makes summary and feedback agree with it",
             students=counted(len(unlike), "student"),
             path=path,
@@ -459,7 +470,8 @@ def _report(
 
 
 def _tell_alike(folder: Path, out: Path, decimal: str) -> None:
-    """Say whose wrong answers are right on another variant; the table of an earlier report goes where there are none."""
+    """Say whose wrong answers are right on another variant; the table of an earlier report goes where there
+    are none."""
     from coursework.gradebook.statistics.alike import COLUMNS, alike
     from coursework.system.tables import SPREADSHEETS, csv_file
     from coursework.system.writing import write_whole

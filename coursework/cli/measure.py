@@ -45,9 +45,9 @@ def accuracy(
 ) -> None:
     """Measure the cost of accuracy in time on this machine.
 
-    Without names: one row for each exercise with numerical answers, with the digits kept in ordinary and in the hardest places
-    and the time for each configuration, beside the textbook formula. With names: every method of these exercises, with its time and
-    its largest error against fifty digits.
+    Without names: one row for each exercise with numerical answers, with the digits kept in ordinary and in
+    the hardest places and the time for each configuration, beside the textbook formula. With names: every
+    method of these exercises, with its time and its largest error against fifty digits.
     """
     if not paper:
         from coursework.accuracy.measuring import needs_mpmath
@@ -162,7 +162,8 @@ def _on_paper(course: Any, names: Sequence[str], quick: bool, lang: str, silent:
         for row in total(rows):
             digits = Message("1 % alone") if row.digits == PLAIN else counted(row.digits, "digit")
             say(
-                "{digits} right answers marked wrong: by 1 % {plain}, by our margin {ours};  accepted: mistakes {mistakes}, "
+                "{digits} right answers marked wrong: by 1 % {plain}, by our margin {ours};  accepted: "
+                "mistakes {mistakes}, "
                 "neighbours {neighbours}",
                 digits=f"{localised(digits):11}",
                 plain=f"{row.wronged.value:8.3%}",

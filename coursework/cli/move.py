@@ -95,7 +95,8 @@ def simulate(
 ) -> None:
     """Simulate a mechanism over a cycle or in time, with only the effects that are named.
 
-    A scene is a file, or an exercise with options; values that are not set are those of the variant of --seed.
+    A scene is a file, or an exercise with options; values that are not set are those of the variant of
+    --seed.
     """
     typed = {name for name in (*options, "tolerance") if is_typed(context, name)}
     if plan and budget:
@@ -261,9 +262,14 @@ def _budget_rows(effect_budget: EffectBudget) -> Iterator[dict[str, Any]]:
             }
         for change in worth.changes:
             yield {
-                **time, "output": change.output, "largest": change.largest, "rms": change.rms, "unit": change.unit,
-                "largest [%]": 100 * change.largest_part, "rms [%]": 100 * change.rms_part,
-            }  # fmt: skip
+                **time,
+                "output": change.output,
+                "largest": change.largest,
+                "rms": change.rms,
+                "unit": change.unit,
+                "largest [%]": 100 * change.largest_part,
+                "rms [%]": 100 * change.rms_part,
+            }
 
 
 def _cost(worth: EffectInfluence) -> float | None:

@@ -81,7 +81,8 @@ zone_option = click.option(
     metavar="ZONE",
     callback=_set_zone,
     expose_value=False,
-    help="Time zone of the school, in which times are read and written: Europe/Paris; by default the machine's.",
+    help="Time zone of the school, in which times are read and written: Europe/Paris; by default the "
+    "machine's.",
 )
 
 
@@ -196,7 +197,8 @@ def known_formats() -> tuple[str, ...]:
 
 
 class Columns(click.ParamType):
-    """Columns of a table by what they hold: ``name=3,first=4``, each by its place from 1 on or by its title."""
+    """Columns of a table by what they hold: ``name=3,first=4``, each by its place from 1 on or by its
+    title."""
 
     name = "columns"
 
@@ -255,7 +257,8 @@ json_option = click.option("--json", "as_json", is_flag=True, help="Print JSON."
 
 
 def spoken(context: click.Context, parameter: click.Parameter, told: Any) -> Any:
-    """Return the language, or the languages, that are told; else the environment's where the course speaks it, else the course's."""
+    """Return the language, or the languages, that are told; else the environment's where the course speaks
+    it, else the course's."""
     from coursework.course.folder import course_folder
     from coursework.language.environment import language_of
 

@@ -77,7 +77,8 @@ class _PlatformName(click.ParamType):
     "--variants",
     "count",
     type=WholeNumber(1, MOST_VARIANTS),
-    help=f"Number of variants of each exercise; by default that of the students of the roster, else {_VARIANTS}.",
+    help="Number of variants of each exercise; by default that of the students of the roster, else "
+    f"{_VARIANTS}.",
 )
 @click.option(
     "--roster",
@@ -127,8 +128,9 @@ def export(
 ) -> None:
     """Write a question bank for a PLATFORM: moodle, qti3, qti21, canvas, stack or gradescope.
 
-    From exercises, or from the file of an assignment. The export contains the answers: it is for the staff. What the platform cannot do
-    is printed and listed in lost.csv; 'coursework grade' marks the answers that come back with issued.json.
+    From exercises, or from the file of an assignment. The export contains the answers: it is for the staff.
+    What the platform cannot do is printed and listed in lost.csv; 'coursework grade' marks the answers that
+    come back with issued.json.
     """
     from coursework.issuing.roster import read_roster
     from coursework.platforms.exporting import export as exported
@@ -177,7 +179,8 @@ def export(
         click.echo(line)
     say(
         (
-            "{variants} for {platform} in {out}, with the answers, for the staff only: see IMPORT.{lang}.txt for "
+            "{variants} for {platform} in {out}, with the answers, for the staff only: see "
+            "IMPORT.{lang}.txt for "
             "the import, and lost.csv for what the platform cannot do"
         ),
         variants=counted(len(drawn.issues), "variant"),
@@ -190,13 +193,15 @@ def export(
 def _export_autograder(
     course: Course[Any], wanted: _Wanted, issued: Path | None, students: Sequence[Student], out: Path
 ) -> None:
-    """Write what marks a build's answers on a platform that runs it: of the build that is told, or of the one that would be made."""
+    """Write what marks a build's answers on a platform that runs it: of the build that is told, or of the one
+    that would be made."""
     from coursework.platforms.gradescope import PLATFORM
     from coursework.system.writing import File, write_tree
 
     if issued is None and not wanted.exercises:
         raise BadInput(
-            "an autograder needs the papers of a build: --issued DIR/issued.json, or the exercises and the roster"
+            "an autograder needs the papers of a build: --issued DIR/issued.json, or the exercises and "
+            "the roster"
             " of the build"
         )
     if issued is not None:
@@ -324,7 +329,8 @@ def _check_folder(out: Path, drawn: DrawnPool) -> None:
     if not before <= {_variant_key(issue.variant.record) for issue in drawn.issues}:
         raise BadInput(
             (
-                "{path} contains other variants from an earlier export; choose another --out, or --overwrite to "
+                "{path} contains other variants from an earlier export; choose another --out, or "
+                "--overwrite to "
                 "replace them (answers to them could then no longer be marked)"
             ),
             path=path,

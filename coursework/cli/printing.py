@@ -70,7 +70,8 @@ def warn_some(lines: Sequence[str], where: object) -> None:
 
 
 def by_reason(rejected: Iterable[tuple[str, str]]) -> list[str]:
-    """Return a line for each reason, such as a misspelt name, with the first place that it holds for and the number of others."""
+    """Return a line for each reason, such as a misspelt name, with the first place that it holds for and the
+    number of others."""
     places: dict[str, list[str]] = {}
     for place, reason in rejected:
         places.setdefault(reason, []).append(place)
@@ -114,14 +115,16 @@ _ASKING = ("FORCE_COLOR", "TTY_COMPATIBLE", "TTY_INTERACTIVE", "JUPYTER_COLUMNS"
 
 
 def _fits_a_terminal() -> bool:
-    """Return whether the table needs a layout for the terminal: fitted and coloured, or without Unicode lines."""
+    """Return whether the table needs a layout for the terminal: fitted and coloured, or without Unicode
+    lines."""
     encoding = getattr(sys.stdout, "encoding", None) or "utf-8"
     is_forced = any(os.environ.get(name) for name in _ASKING)
     return is_forced or sys.stdout.isatty() or not encoding.lower().startswith("utf")
 
 
 def _ruled(cells: Sequence[Sequence[str]], right: Sequence[bool], title: str) -> list[str]:
-    """Return the lines of a table of plain letters, drawn as on a terminal wide enough, which takes a tenth of a second less.
+    """Return the lines of a table of plain letters, drawn as on a terminal wide enough, which takes a tenth
+    of a second less.
 
     Nothing where a letter is none of Latin's, whose width is one, or where the table is too wide.
     """

@@ -74,8 +74,9 @@ def scan(
 ) -> int:
     """Read scans of answer pages: PDFs, pictures, and zips or folders of them, in any order.
 
-    The readings are in answers.csv, for 'coursework grade'; doubtful ones wait on the page queue/index.html; pages that do not
-    belong to this paper are listed in rejected.csv. A second run with more scans adds to what is there.
+    The readings are in answers.csv, for 'coursework grade'; doubtful ones wait on the page queue/index.html;
+    pages that do not belong to this paper are listed in rejected.csv. A second run with more scans adds to
+    what is there.
     """
     if issued.is_dir():
         raise BadInput(
@@ -105,7 +106,8 @@ def scan(
 
 
 def _typed_in_browser(course: Any, issued: Path, out: Path, sure: float, decimal: str) -> int:
-    """Serve the page of the queue until Ctrl-C, or until nothing waits; give the status of what was typed last."""
+    """Serve the page of the queue until Ctrl-C, or until nothing waits; give the status of what was typed
+    last."""
     import tempfile
     import webbrowser
     from threading import Thread

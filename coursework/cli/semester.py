@@ -30,7 +30,8 @@ _STATED = re.compile(r"(?:(?P<name>[^=/\\]+)=)?(?P<folder>.+?)(?::(?P<weight>\d+
     default="none",
     show_default=True,
     help=(
-        "What an absence is worth: none, there is no average; zero; excused, it is left out with its weight, as excused "
+        "What an absence is worth: none, there is no average; zero; excused, it is left out with its "
+        "weight, as excused "
         "absences always are."
     ),
 )
@@ -39,9 +40,9 @@ _STATED = re.compile(r"(?:(?P<name>[^=/\\]+)=)?(?P<folder>.+?)(?::(?P<weight>\d+
 def semester(assignments: Sequence[str], out: Path, absent: str, decimal: str, as_json: bool) -> int:
     """Write the marks of all assignments of a semester into one table, with weighted averages out of 20.
 
-    MARKS is a folder made by grade, or the folder of the build above it, with the weight of the assignment behind it: midterm:1
-    final:2. A mark that may still
-    change has a star. Absent is who handed in nothing, unless attendance.csv beside the marks says otherwise.
+    MARKS is a folder made by grade, or the folder of the build above it, with the weight of the assignment
+    behind it: midterm:1 final:2. A mark that may still change has a star. Absent is who handed in nothing,
+    unless attendance.csv beside the marks says otherwise.
     """
     from coursework.gradebook import semester as table
     from coursework.gradebook.presence import ABSENT

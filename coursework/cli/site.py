@@ -35,8 +35,14 @@ if TYPE_CHECKING:
     from coursework.site.frame.settings import Entrance
 
 _LIBRARIES = (
-    "argon2", "itsdangerous", "psycopg", "python_multipart", "sqlalchemy", "starlette", "uvicorn",
-)  # fmt: skip
+    "argon2",
+    "itsdangerous",
+    "psycopg",
+    "python_multipart",
+    "sqlalchemy",
+    "starlette",
+    "uvicorn",
+)
 _LOOPBACK = "127.0.0.1"
 
 open_option = click.option("--open/--no-open", "opens", help="Open the page in the browser.")
@@ -57,7 +63,8 @@ def _lti_ready() -> None:
 @click.option(
     "--db",
     metavar="URL",
-    help=f"Database of the site: a file of SQLite, or postgresql+psycopg://…; by default {SITE_DATABASE} in the current folder.",
+    help=f"Database of the site: a file of SQLite, or postgresql+psycopg://…; by default {SITE_DATABASE} in "
+    "the current folder.",
 )
 @click.option(
     "--host",
@@ -111,9 +118,18 @@ def _lti_ready() -> None:
 @open_option
 @click.pass_context
 def serve(
-    context: click.Context, db: str | None, host: str, port: int, url: str | None, workers: int, demo: str | None,
-    administrator: str | None, instructor: str | None, lti: Path | None, opens: bool,
-) -> None:  # fmt: skip
+    context: click.Context,
+    db: str | None,
+    host: str,
+    port: int,
+    url: str | None,
+    workers: int,
+    demo: str | None,
+    administrator: str | None,
+    instructor: str | None,
+    lti: Path | None,
+    opens: bool,
+) -> None:
     """Serve the site: practice for students, a desk for instructors.
 
     Without --url it is for this machine only and opens without an account. Ctrl-C stops it.
@@ -149,7 +165,8 @@ def _check_private(db: str) -> None:
     file = file_of(db)
     if is_shared(file):
         warn(
-            "note: other users of this machine can read {file}, with all answers and the signing key: chmod 600 {file}",
+            "note: other users of this machine can read {file}, with all answers and the signing key: "
+            "chmod 600 {file}",
             file=file,
         )
 
@@ -162,7 +179,8 @@ def _check_lti(folder: Path, url: str) -> None:
 
     if not settings_of(folder, url).platforms:
         warn(
-            "note: no platform in {folder}: 'coursework lti platform moodle https://… --in {folder}' adds one",
+            "note: no platform in {folder}: 'coursework lti platform moodle https://… --in {folder}' "
+            "adds one",
             folder=folder,
         )
     if not (key_folder := KeyFolder(folder / "keys")).keys:
@@ -216,7 +234,8 @@ def _checked_url(url: str) -> str:
     parts = urlsplit(url)
     if parts.scheme not in ("http", "https") or not parts.hostname or parts.path.strip("/"):
         raise BadInput(
-            "--url is the address of a host, https://mechanics.example.org, with no path behind it; found {url!r}",
+            "--url is the address of a host, https://mechanics.example.org, with no path behind it; "
+            "found {url!r}",
             url=url,
         )
     return url.rstrip("/")
@@ -235,11 +254,13 @@ def _entrance(host: str, url: str, demo: str | None, *, is_stated: bool) -> Entr
         return Entrance.LOCAL if demo is None else Entrance.DEMO
     if demo is not None:
         raise BadInput(
-            "in --demo everybody can sign in as anybody: it is for this machine only, without --host and --url"
+            "in --demo everybody can sign in as anybody: it is for this machine only, without --host "
+            "and --url"
         )
     if url.startswith("http:") and not is_own:
         warn(
-            "note: {url} is plain http: everybody on the network can read passwords and answers; put a proxy with https before it",
+            "note: {url} is plain http: everybody on the network can read passwords and answers; put a "
+            "proxy with https before it",
             url=url,
         )
     return Entrance.ACCOUNTS

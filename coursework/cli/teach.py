@@ -114,12 +114,14 @@ def _spare(paths: Sequence[Path], overwrite: bool) -> None:
     if there:
         template = (
             (
-                "{path} exists already and may contain somebody's work; choose another --out, or --overwrite to "
+                "{path} exists already and may contain somebody's work; choose another --out, or "
+                "--overwrite to "
                 "replace it"
             )
             if len(there) == 1
             else (
-                "{path} and {count} more exist already and may contain somebody's work; choose another --out, or "
+                "{path} and {count} more exist already and may contain somebody's work; choose another "
+                "--out, or "
                 "--overwrite to replace them"
             )
         )
@@ -194,7 +196,8 @@ def notebook(
         print_notes(
             [
                 Message(
-                    "{exercise}: seed {seed} gives no valid variant; the notebook has seed {next}, the next that does",
+                    "{exercise}: seed {seed} gives no valid variant; the notebook has seed {next}, the "
+                    "next that does",
                     exercise=name,
                     seed=seed,
                     next=missing,

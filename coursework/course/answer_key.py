@@ -51,8 +51,8 @@ class Slip(NamedTuple):
         return answer / self.factor
 
     def is_turned(self, answers: Iterable[float], turn: float, reference: float = 0.0) -> bool:
-        """Return whether directions are more than a ``turn``, and than the right one, when mended: modulo a turn, some are near
-        to anything."""
+        """Return whether directions are more than a ``turn``, and than the right one, when mended: modulo a
+        turn, some are near to anything."""
         most = turn if abs(reference) <= turn else turn + abs(reference)
         return (
             bool(turn)
@@ -61,8 +61,8 @@ class Slip(NamedTuple):
         )
 
     def trace(self, unit: str) -> str:
-        """Return the key under which a unit that is mistaken everywhere in the same way is recognised: metres for
-        millimetres, say; an empty text for a sign."""
+        """Return the key under which a unit that is mistaken everywhere in the same way is recognised: metres
+        for millimetres, say; an empty text for a sign."""
         if self.kind == "sign":
             return ""
         return f"{self.kind}/{self.factor:.6g}/{'mm' if 'mm' in unit else unit}"
@@ -114,7 +114,8 @@ class Key:
         return KeyNumbers(self.reference, self.envelope)
 
     def half_width(self, part: Part) -> float:
-        """Return the largest accepted distance from the reference, in the part's unit; 0 for what is judged exactly."""
+        """Return the largest accepted distance from the reference, in the part's unit; 0 for what is judged
+        exactly."""
         if not part.has_margin:
             return 0.0
         if part not in self._half_widths:
@@ -157,7 +158,8 @@ class Key:
         return {quantity: plain_scalar(value) for quantity, value in values.items()}
 
     def wrong_ways(self, quantity: str) -> Iterator[tuple[str, Any]]:
-        """Yield the named mistakes that reach a quantity, each with its wrong value, in the solution's order."""
+        """Yield the named mistakes that reach a quantity, each with its wrong value, in the solution's
+        order."""
         for name, values in self.wrong.items():
             if quantity in values:
                 yield name, values[quantity]
@@ -168,7 +170,8 @@ class Key:
         return self.rules.share(mistake.kind) if mistake.share is None else mistake.share
 
     def usual_ways(self, quantity: str) -> tuple[tuple[UsualError, ...], np.ndarray]:
-        """Return the errors that nobody need list, those in a quantity's own formula first, and the values that they give.
+        """Return the errors that nobody need list, those in a quantity's own formula first, and the values
+        that they give.
 
         Shape ``(errors,)``; NaN where one leads nowhere.
         """
@@ -176,13 +179,15 @@ class Key:
         return errors, values[:, 0]
 
     def usual_value(self, error: UsualError, quantity: str) -> float:
-        """Return the value that an error in a formula gives for a quantity; NaN where it does not reach it."""
+        """Return the value that an error in a formula gives for a quantity; NaN where it does not reach
+        it."""
         return float(self._error_values.of_one(error, quantity)[0])
 
     def usual_ways_from(
         self, quantity: str, own_answers: Mapping[str, Any]
     ) -> tuple[tuple[UsualError, ...], np.ndarray]:
-        """Return the errors in a quantity's own formula, and what they give from a student's own earlier answers."""
+        """Return the errors in a quantity's own formula, and what they give from a student's own earlier
+        answers."""
         variant = self.variant
         given = {
             **variant.used,
@@ -214,8 +219,8 @@ class Key:
     def followed(self, part: Part, own_answers: Mapping[str, Any], wrong: Collection[str]) -> Any:
         """Return the value that a right method gives from a student's own earlier answers, or None.
 
-        ``own_answers`` holds them by quantity, right ones too: a student goes on from what they wrote. None where
-        no ``wrong`` one bears on this quantity, and where nothing comes of it: the linkage does not
+        ``own_answers`` holds them by quantity, right ones too: a student goes on from what they wrote. None
+        where no ``wrong`` one bears on this quantity, and where nothing comes of it: the linkage does not
         close, the value is not finite, or within the margin of 0. A count of 0 is not trivial.
         """
         quantity = part.quantity
@@ -247,7 +252,8 @@ class Key:
         return bool(part.sort.distance(part, value, 0.0, None, self.half_width(part)) <= 1)
 
     def slips(self, part: Part) -> Iterator[Slip]:
-        """Slips that need nobody to declare them: what each makes of a right value, and how a wrong one is mended."""
+        """Slips that need nobody to declare them: what each makes of a right value, and how a wrong one is
+        mended."""
         if not part.sort.is_number:
             return
         if self.reference[part.quantity] and not part.judge:  # a drawing tells the senses itself
@@ -269,8 +275,8 @@ class Key:
         return self._other_values(part.quantity) if is_alone else []
 
     def slip_values(self, part: Part) -> Iterator[tuple[str, Any]]:
-        """Yield the wrong values that slips, and the other case, give of a part, each with its kind; none of one that a
-        judge judges, who may accept others than the reference."""
+        """Yield the wrong values that slips, and the other case, give of a part, each with its kind; none of
+        one that a judge judges, who may accept others than the reference."""
         if part.judge:
             return
         for slip in self.slips(part):
@@ -279,7 +285,8 @@ class Key:
             yield "other_case", value
 
     def _other_values(self, quantity: str) -> list[Any]:
-        """Values of a quantity when a given case of two is taken for the other one: the assembly mode, say."""
+        """Values of a quantity when a given case of two is taken for the other one: the assembly mode,
+        say."""
         return self._other_cases.get(quantity, [])
 
     @cached_property

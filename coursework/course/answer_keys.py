@@ -1,8 +1,9 @@
 """Names under which a student writes answers where there are no boxes: the symbol that is asked for, or the
 question's number.
 
-The id of a part is a word of its author, in the author's language, and may tell: ``highest_group`` is the highest. It is shown only
-where it spells a symbol of the sheet, as ``theta4`` and ``a_BA_t`` do; every other question goes by its number, ``q7``.
+The id of a part is a word of its author, in the author's language, and may tell: ``highest_group`` is the
+highest. It is shown only where it spells a symbol of the sheet, as ``theta4`` and ``a_BA_t`` do; every other
+question goes by its number, ``q7``.
 """
 
 from __future__ import annotations
@@ -15,9 +16,9 @@ if TYPE_CHECKING:
     from coursework.model import Part
 
 _GREEK = frozenset(
-    "alpha beta gamma delta epsilon zeta eta theta iota kappa lambda mu nu xi omicron pi rho sigma tau upsilon phi chi psi omega"
-    .split()
-)  # fmt: skip
+    "alpha beta gamma delta epsilon zeta eta theta iota kappa lambda mu nu xi omicron pi rho sigma tau "
+    "upsilon phi chi psi omega".split()
+)
 _DERIVED = frozenset(("dot", "ddot"))
 _NUMBERED = re.compile(r"(?:q|Q|question_)([1-9][0-9]{0,2})")
 
@@ -41,7 +42,8 @@ def _key(number: int, part: Part, ids: frozenset[str]) -> str:
 
 
 def part_called(name: str, ids: Sequence[str]) -> str:
-    """Return the id of the part that an answer under a name is of, among those asked, in order; the name itself where it is none."""
+    """Return the id of the part that an answer under a name is of, among those asked, in order; the name
+    itself where it is none."""
     if name in ids:
         return name
     match = _NUMBERED.fullmatch(name)

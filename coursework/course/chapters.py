@@ -1,4 +1,5 @@
-"""In which order a course is learnt: chapters, their sections, and in each a lesson, its exercises, and what is needed first.
+"""In which order a course is learnt: chapters, their sections, and in each a lesson, its exercises, and what
+is needed first.
 
 ``exercises/course.toml`` states it::
 
@@ -10,7 +11,8 @@
     needs = ["structure"]
     exercises = ["circles", { name = "linkage", needs = ["bars"] }]
 
-A section has a lesson, whose title it bears, or a ``title`` of its own, or neither. Whatever is needed first stands earlier.
+A section has a lesson, whose title it bears, or a ``title`` of its own, or neither. Whatever is needed first
+stands earlier.
 """
 
 from __future__ import annotations
@@ -21,13 +23,16 @@ from typing import Any
 
 from coursework.errors import BadCourse, nearest
 
-_FORM = '[[chapters]] with title = { en = "…", fr = "…" }, then [[chapters.sections]] with lesson = "…", exercises = ["…"]'
+_FORM = (
+    '[[chapters]] with title = { en = "…", fr = "…" }, then [[chapters.sections]] with lesson = "…", '
+    'exercises = ["…"]'
+)
 
 
 @dataclass(frozen=True)
 class ChapterSection:
-    """A lesson and the exercises that belong to it, in order; ``needs`` are lessons and exercises, by the name of who needs
-    them first: the lesson's own name, or an exercise's."""
+    """A lesson and the exercises that belong to it, in order; ``needs`` are lessons and exercises, by the
+    name of who needs them first: the lesson's own name, or an exercise's."""
 
     lesson: str
     titles: Mapping[str, str]
@@ -179,7 +184,8 @@ def _check_order(course_chapters: Sequence[Chapter], source: str) -> None:
         exercise for chapter in course_chapters for exercise in chapter.exercises if exercise in lessons
     ):
         raise BadCourse(
-            f"{source}: a lesson and an exercise are called {name!r}, and would have one page; rename one of them"
+            f"{source}: a lesson and an exercise are called {name!r}, and would have one page; rename "
+            "one of them"
         )
     seen: set[str] = set()
     for section in sections(course_chapters):

@@ -1,8 +1,9 @@
 """A course carried to other machines, whose processes have the package and nothing of the folder.
 
-The folder is sent once, by its content: a process unpacks it in a folder of its own that the digest names, so that two
-courses, or two states of one, stand side by side. Places in it are told from there: a text or a path in the course's folder
-is, in the process, the same place of the unpacked one, and back, so that what comes back says what it would say here.
+The folder is sent once, by its content: a process unpacks it in a folder of its own that the digest names, so
+that two courses, or two states of one, stand side by side. Places in it are told from there: a text or a path
+in the course's folder is, in the process, the same place of the unpacked one, and back, so that what comes
+back says what it would say here.
 """
 
 from __future__ import annotations
@@ -50,7 +51,8 @@ class _Caller(NamedTuple):
 
 
 class Carried:
-    """A course and the tasks about it, as bytes; ``content`` is what a process needs of the folder before the first."""
+    """A course and the tasks about it, as bytes; ``content`` is what a process needs of the folder before the
+    first."""
 
     def __init__(self, folder: Folder):
         builtin = folder.is_builtin
@@ -62,8 +64,9 @@ class Carried:
         self._roots: Roots = {**roots, **_builtin()}
 
     def packed(self, function: Callable[..., Any], arguments: tuple[Any, ...]) -> bytes:
-        """Return a task as a pickle that does it where it is read, with :attr:`content` as its one buffer, and whose value is what
-        :meth:`unpacked` reads: who passes it on, or reads it, needs to know nothing of the package before."""
+        """Return a task as a pickle that does it where it is read, with :attr:`content` as its one buffer,
+        and whose value is what :meth:`unpacked` reads: who passes it on, or reads it, needs to know nothing
+        of the package before."""
         task = tuple(_dumped(item, self._roots) for item in (function, *arguments))
         return pickle.dumps(_Task(self.content, self._caller, task), 5, buffer_callback=lambda _: False)
 
@@ -145,7 +148,8 @@ def _check(caller: _Caller) -> None:
             f"{n}: {here.get(n, 'none')} there, {caller.versions[n]} here" for n in unlike[:3]
         )
         raise OtherVersion(
-            f"the worker on {platform.node()} has not what this machine has ({differences}): install the same on both"
+            f"the worker on {platform.node()} has not what this machine has ({differences}): install "
+            "the same on both"
         )
 
 
@@ -252,7 +256,8 @@ class _Unpickler(pickle.Unpickler):
 
 
 def _dumped(obj: Any, roots: Roots) -> bytes:
-    """Return a pickle; each object of one that may hold a place is looked at, which takes several times as long."""
+    """Return a pickle; each object of one that may hold a place is looked at, which takes several times as
+    long."""
     plain = pickle.dumps(obj, 5)
     names = (name.encode("utf-8", "surrogatepass") for names in roots.values() for name in names)
     if not any(name in plain for name in (b"pathlib", *names)):

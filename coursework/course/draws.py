@@ -1,9 +1,9 @@
 """Draws variants: the same values for ever from (exercise, version, seed), on any platform.
 
-Bits come from SHAKE-128 keyed by exercise, version, seed and a block counter, so no seed and no
-exercise disturbs another. For an assignment, what keys them passes through an HMAC of its secret: then the
-seed is a code that draws nothing without the secret. Each value is a whole number of steps, drawn with integers alone, then
-divided once by a power of ten: it is the double nearest to the decimal that is printed.
+Bits come from SHAKE-128 keyed by exercise, version, seed and a block counter, so no seed and no exercise
+disturbs another. For an assignment, what keys them passes through an HMAC of its secret: then the seed is a
+code that draws nothing without the secret. Each value is a whole number of steps, drawn with integers alone,
+then divided once by a power of ten: it is the double nearest to the decimal that is printed.
 """
 
 from __future__ import annotations
@@ -138,12 +138,12 @@ def _none() -> Solution:
 
 
 class Draws:
-    """Draws of an exercise: its given quantities, and its constraints joined with what computes the quantities that
-    they need.
+    """Draws of an exercise: its given quantities, and its constraints joined with what computes the
+    quantities that they need.
 
-    A constraint of given quantities and helpers alone is evaluated first; only the candidates that satisfy all such
-    are passed to the graph of the reference solution, which computes the quantities that the other constraints name, and
-    no others.
+    A constraint of given quantities and helpers alone is evaluated first; only the candidates that satisfy
+    all such are passed to the graph of the reference solution, which computes the quantities that the other
+    constraints name, and no others.
 
     Parameters
     ----------
@@ -192,7 +192,8 @@ class Draws:
             raise BadCourse(
                 f"{self.name}: {min(twice)} is a constraint and a quantity; rename the constraint"
             )
-        # A helper that bears the name of a quantity says it of the figure; these constraints take the reference.
+        # A helper that bears the name of a quantity says it of the figure; these constraints take the
+        # reference.
         helpers = {f.__name__: f for f in self.spec.helpers if f.__name__ not in graph.names}
         graph = graph.with_functions({**helpers, **self._computed})
         self._check(graph, tuple(self._computed))
@@ -248,8 +249,8 @@ class Draws:
     # -------------------------------------------------------------------- draws
 
     def candidates(self, words: np.ndarray, stated: Stated = NONE_STATED) -> dict[str, np.ndarray]:
-        """Return given quantities from raw bits of shape (n, number of given quantities); those that are stated as
-        they are."""
+        """Return given quantities from raw bits of shape (n, number of given quantities); those that are
+        stated as they are."""
         drawn: dict[str, np.ndarray] = {}
         for column, (name, spec) in enumerate(self.spec.given.items()):
             if name in stated:
@@ -273,15 +274,17 @@ class Draws:
     def draw(
         self, seeds: Sequence[int], secret: Secret | None = None, stated: Stated = NONE_STATED
     ) -> list[dict[str, float | str]]:
-        """Return the given values of each seed's variant, in canonical units; with a secret, of each code of an assignment.
+        """Return the given values of each seed's variant, in canonical units; with a secret, of each code of
+        an assignment.
 
-        Stated values, in canonical units, are not drawn. Where nothing is left to draw, no constraint refuses them;
-        :meth:`refusing` names those that would.
+        Stated values, in canonical units, are not drawn. Where nothing is left to draw, no constraint refuses
+        them; :meth:`refusing` names those that would.
 
         Raises
         ------
         Starved
-            Some seed finds no variant in its bounded draws; the message names the constraint that refuses most.
+            Some seed finds no variant in its bounded draws; the message names the constraint that refuses
+            most.
         """
         if self.is_whole(stated):
             specs = self.spec.given.items()
@@ -316,7 +319,8 @@ class Draws:
         refusals = Counter({constraint: int(mask.sum()) for constraint, mask in refused.items()})
         if stated:
             return Starved(
-                "{exercise}: there is no variant with {values}; refused by {constraints}; change one of the values",
+                "{exercise}: there is no variant with {values}; refused by {constraints}; change one "
+                "of the values",
                 exercise=self.name,
                 values=", ".join(f"{name} = {value}" for name, value in stated.items()),
                 constraints=", ".join(name for name, count in refusals.most_common(3) if count),
@@ -327,7 +331,8 @@ class Draws:
             if count
         ]
         return Starved(
-            "{exercise}: seed {seed} found no variant in {draws} draws; refused by {worst}; widen a range or relax the constraint",
+            "{exercise}: seed {seed} found no variant in {draws} draws; refused by {worst}; widen a "
+            "range or relax the constraint",
             exercise=self.name,
             seed=seed,
             draws=len(words),
@@ -337,7 +342,8 @@ class Draws:
         )
 
     def _said(self, constraint: str) -> str:
-        """Return a constraint as messages name it: the condition that a mechanism's file states, or its name."""
+        """Return a constraint as messages name it: the condition that a mechanism's file states, or its
+        name."""
         stated = next((c for c in self.spec.constraints if getattr(c, "__name__", "") == constraint), None)
         said = getattr(stated, "said", "")
         return as_message(said) if said else constraint
@@ -347,7 +353,8 @@ class Draws:
         return float(self.accepted(self.first_candidates(count)).mean())
 
     def first_candidates(self, count: int) -> dict[str, np.ndarray]:
-        """Return the first candidates of the first seeds, at least so many, whether or not they are variants."""
+        """Return the first candidates of the first seeds, at least so many, whether or not they are
+        variants."""
         seeds = range(math.ceil(count / BLOCK))
         return self.candidates(np.concatenate([self._block(seed, 0) for seed in seeds]))
 

@@ -48,7 +48,8 @@ class ErrorValues:
         self._rows: dict[str, tuple[tuple[UsualError, ...], np.ndarray]] = {}
 
     def of(self, quantity: str) -> tuple[tuple[UsualError, ...], np.ndarray]:
-        """Return the errors that reach a quantity, those in its own formula first, and their values: shape ``(errors, n)``.
+        """Return the errors that reach a quantity, those in its own formula first, and their values: shape
+        ``(errors, n)``.
 
         NaN where an error leads nowhere.
         """
@@ -60,7 +61,8 @@ class ErrorValues:
         return self._rows[quantity]
 
     def of_one(self, error: UsualError, quantity: str) -> np.ndarray:
-        """Return the values that an error in a formula gives for a quantity, shape ``(n,)``; NaN where it does not reach it."""
+        """Return the values that an error in a formula gives for a quantity, shape ``(n,)``; NaN where it
+        does not reach it."""
         source = error.source
         is_met = source == quantity or self._is_above(source, quantity)
         columns = self._errors_of(source)[1] if is_met else {}
@@ -90,12 +92,14 @@ class ErrorValues:
                 yield from zip(errors, columns[quantity], strict=True)
 
     def _is_above(self, source: str, quantity: str) -> bool:
-        """Return whether a quantity is met on the way to another, so that an error in its formula reaches that."""
+        """Return whether a quantity is met on the way to another, so that an error in its formula reaches
+        that."""
         is_met = source in self.right and source not in self.given
         return is_met and quantity in self.exercise.solution.depending_on(source)
 
     def _errors_of(self, source: str) -> tuple[tuple[UsualError, ...], dict[str, np.ndarray]]:
-        """Return the errors in a formula, and by quantity that they reach their values, shape ``(errors, n)``."""
+        """Return the errors in a formula, and by quantity that they reach their values, shape
+        ``(errors, n)``."""
         if source not in self._by_source:
             node = self.exercise.solution.graph.textbook.node(source)
             found = formula_errors(node.function)
@@ -131,7 +135,8 @@ class ErrorValues:
         return columns
 
     def _taken_for(self, quantity: str) -> Iterator[tuple[UsualError, Any]]:
-        """Values of the same unit that are taken for what is asked: what it is computed from, what else is asked."""
+        """Values of the same unit that are taken for what is asked: what it is computed from, what else is
+        asked."""
         units = self.exercise.units
         solution = self.exercise.solution
         for name in (*self.given, *solution.graph.quantities):

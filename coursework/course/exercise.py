@@ -47,9 +47,9 @@ class _Exercises(Protocol):
 class CourseExercise(Generic[V]):
     """An exercise of an open course: draws, solves, reads its texts.
 
-    Its variants are of the class that it is handed, made of the exercise, a seed, the given values, a language, the
-    parts that are asked where they are not the usual ones, the record that issued it, of an older version, and the
-    orders of its choices, where they were recorded.
+    Its variants are of the class that it is handed, made of the exercise, a seed, the given values, a
+    language, the parts that are asked where they are not the usual ones, the record that issued it, of an
+    older version, and the orders of its choices, where they were recorded.
     """
 
     def __init__(self, name: str, folder: Folder, course: _Exercises, variant: Callable[..., V]):
@@ -156,12 +156,13 @@ class CourseExercise(Generic[V]):
         only
             The quantities wanted, and nothing else is computed; every part's unless told.
         effects
-            Optional effects that the request calls for; unless told, those of the exercise's own questions. None with ``()``.
+            Optional effects that the request calls for; unless told, those of the exercise's own questions.
+            None with ``()``.
         **given
-            Scalars, arrays that broadcast, or texts with a unit (``"0.2286 m"``). The driver's angle and those of
-            the loops count modulo whole turns, which cost no digit. Any quantity may be
-            given, also one that the graph could compute: then it is used as it is. A list of mappings, such
-            as joints, is handed on as a tuple.
+            Scalars, arrays that broadcast, or texts with a unit (``"0.2286 m"``). The driver's angle and
+            those of the loops count modulo whole turns, which cost no digit. Any quantity may be given, also
+            one that the graph could compute: then it is used as it is. A list of mappings, such as joints, is
+            handed on as a tuple.
 
         Returns
         -------
@@ -263,11 +264,12 @@ class CourseExercise(Generic[V]):
         secret: Secret | None = None,
         given: Mapping[str, Any] | None = None,
     ) -> V:
-        """Return the variant of a seed: the same for ever for this exercise and version; in the course's language unless told.
+        """Return the variant of a seed: the same for ever for this exercise and version; in the course's
+        language unless told.
 
-        ``parts`` are the ids of those that it asks; ``usual`` stands for those that are asked unless told, ``all``
-        for every one. With the ``secret`` of an assignment, the seed is one of its codes. Values that are ``given``, numbers or
-        texts with a unit, are not drawn.
+        ``parts`` are the ids of those that it asks; ``usual`` stands for those that are asked unless told,
+        ``all`` for every one. With the ``secret`` of an assignment, the seed is one of its codes. Values that
+        are ``given``, numbers or texts with a unit, are not drawn.
 
         Raises
         ------
@@ -288,7 +290,8 @@ class CourseExercise(Generic[V]):
         secret: Secret | None = None,
         given: Mapping[str, Any] | None = None,
     ) -> list[V]:
-        """Return the variants of many seeds, drawn together; with a ``secret``, of many codes of its assignment."""
+        """Return the variants of many seeds, drawn together; with a ``secret``, of many codes of its
+        assignment."""
         lang = self.folder.language if lang is None else lang
         chosen = self.chosen_parts(parts)
         seeds = list(seeds)
@@ -316,7 +319,8 @@ class CourseExercise(Generic[V]):
         return {name: self.intake.value(name, value) for name, value in given.items()}
 
     def _orders(self, code: int, secret: Secret | None) -> dict[str, tuple[str, ...]] | None:
-        """Return the orders of choices by part that a code of an assignment draws; None where they are the seed's."""
+        """Return the orders of choices by part that a code of an assignment draws; None where they are the
+        seed's."""
         if secret is None:
             return None
         return {p.id: printed_order(self.name, code, p, secret) for p in self.spec.parts if p.choices}
@@ -329,7 +333,8 @@ class CourseExercise(Generic[V]):
     def chosen_parts(self, parts: Sequence[str] | None) -> tuple[Part, ...] | None:
         """Parts by id, in the order of the exercise; None for the usual ones.
 
-        Those that are judged together are asked together: one that is named brings the others, less those by request.
+        Those that are judged together are asked together: one that is named brings the others, less those by
+        request.
 
         Raises
         ------

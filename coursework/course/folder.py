@@ -2,8 +2,9 @@
 
 ``exercises/``, ``solutions/`` and ``templates/`` stand side by side. Nothing is registered: the stem of
 ``exercises/NAME.py`` is the exercise's name everywhere. Files may stand in folders of topics,
-``exercises/TOPIC/NAME.py``; a topic is a folder without ``__init__.py``, and no part of a name. ``exercises/NAME.toml`` is a
-mechanism, from which both modules and all texts are compiled: :mod:`coursework.linkages`.
+``exercises/TOPIC/NAME.py``; a topic is a folder without ``__init__.py``, and no part of a name.
+``exercises/NAME.toml`` is a mechanism, from which both modules and all texts are compiled:
+:mod:`coursework.linkages`.
 """
 
 from __future__ import annotations
@@ -87,8 +88,8 @@ class Folder:
         return tuple(sorted(self._modules("exercises")))
 
     def home(self, kind: str, name: str) -> Path | None:
-        """Return the file of ``KIND/NAME``, wherever it stands: ``NAME.py``, ``NAME/__init__.py``, or the mechanism's ``NAME.toml``; none
-        where there is none.
+        """Return the file of ``KIND/NAME``, wherever it stands: ``NAME.py``, ``NAME/__init__.py``, or the
+        mechanism's ``NAME.toml``; none where there is none.
 
         Raises
         ------
@@ -102,7 +103,8 @@ class Folder:
         return home if home is not None and home.exists() else None
 
     def _modules(self, kind: str) -> dict[str, Path]:
-        """Return the modules of ``exercises`` or ``solutions`` by name; shared ones, whose names begin with an underscore, are none."""
+        """Return the modules of ``exercises`` or ``solutions`` by name; shared ones, whose names begin with
+        an underscore, are none."""
         top = self.root / kind
         topics = [
             p
@@ -137,7 +139,8 @@ class Folder:
         return {n: p for n, p in self._modules("exercises").items() if p.suffix == MECHANISM}
 
     def text_file(self, kind: str, name: str, lang: str) -> Path:
-        """``NAME.LANG.md.j2``, beside the module or inside the exercise's own folder; where it would stand if there is none."""
+        """``NAME.LANG.md.j2``, beside the module or inside the exercise's own folder; where it would stand if
+        there is none."""
         file = f"{name}.{lang}.md.j2"
         folders = self._text_folders(kind, name)
         written = next((folder / file for folder in folders if (folder / file).exists()), None)
@@ -208,7 +211,8 @@ class Folder:
 
     @cached_property
     def languages(self) -> tuple[str, ...]:
-        """The languages that the course speaks, its own first: those that it states, else every one of the engine.
+        """The languages that the course speaks, its own first: those that it states, else every one of the
+        engine.
 
         Raises
         ------
@@ -258,8 +262,8 @@ class Folder:
 
     @property
     def study_order(self) -> tuple[str, ...]:
-        """The exercises in the order in which they are proposed to who studies alone: those that the course states (``[study]``,
-        ``order``), then those of its chapters, then the others.
+        """The exercises in the order in which they are proposed to who studies alone: those that the course
+        states (``[study]``, ``order``), then those of its chapters, then the others.
 
         Raises
         ------
@@ -269,7 +273,8 @@ class Folder:
         order = self._study.get("order", [])
         if not isinstance(order, list) or not set(map(str, order)) <= set(self.names):
             raise BadCourse(
-                f'{self._settings_file}: [study]: order = ["…"] names exercises of the course; found {order!r}'
+                f'{self._settings_file}: [study]: order = ["…"] names exercises of the course; found '
+                f"{order!r}"
             )
         return tuple(dict.fromkeys([*map(str, order), *self.in_order]))
 
@@ -277,7 +282,8 @@ class Folder:
 
     @property
     def lessons(self) -> tuple[str, ...]:
-        """Names of the lessons, ``exercises/lessons/NAME.LANG.md``: those of the chapters in their order, then the others."""
+        """Names of the lessons, ``exercises/lessons/NAME.LANG.md``: those of the chapters in their order,
+        then the others."""
         return tuple(dict.fromkeys([*(n for c in self.chapters for n in c.lessons), *self._lessons]))
 
     @property
@@ -321,8 +327,9 @@ class Folder:
 
     @property
     def install(self) -> str:
-        """The command that installs what self-study runs: of the requirement that the course states (``[study]``,
-        ``install``: a wheel's file, a URL, a name and version), else of the package in this version.
+        """The command that installs what self-study runs: of the requirement that the course states
+        (``[study]``, ``install``: a wheel's file, a URL, a name and version), else of the package in this
+        version.
 
         Raises
         ------
@@ -333,7 +340,8 @@ class Folder:
 
     @property
     def wheel(self) -> Path | None:
-        """The wheel that the course brings for self-study and that stands beside the notebooks, where it names one.
+        """The wheel that the course brings for self-study and that stands beside the notebooks, where it
+        names one.
 
         Raises
         ------
@@ -346,7 +354,8 @@ class Folder:
         path = self.root / requirement
         if not path.is_file():
             raise BadCourse(
-                f"{self._settings_file}: [study]: install = {requirement!r}: there is no such file in {self.root}"
+                f"{self._settings_file}: [study]: install = {requirement!r}: there is no such file in "
+                f"{self.root}"
             )
         return path
 
@@ -359,7 +368,8 @@ class Folder:
             or set(requirement) & set("\"'`\n\r")
         ):
             raise BadCourse(
-                f'{self._settings_file}: [study]: install = "…" is what pip is to install; found {requirement!r}'
+                f'{self._settings_file}: [study]: install = "…" is what pip is to install; found '
+                f"{requirement!r}"
             )
         return requirement
 
@@ -456,7 +466,8 @@ def _toml(path: Path, said: str) -> Mapping[str, Any]:
 
 
 def is_mechanism(path: Path) -> bool:
-    """Return whether a TOML file in the exercises states a mechanism, and not settings or the data of a module beside it."""
+    """Return whether a TOML file in the exercises states a mechanism, and not settings or the data of a
+    module beside it."""
     if path.name == "course.toml" or path.with_suffix(".py").exists():
         return False
     return (
@@ -473,7 +484,8 @@ def _where(fault: Exception, root: Path) -> str:
 
 
 def _line_of(fault: Exception, root: Path) -> str:
-    """Return the last line of the course's own code on a fault's way, as ``line 3: ``; nothing where there is none."""
+    """Return the last line of the course's own code on a fault's way, as ``line 3: ``; nothing where there is
+    none."""
     import traceback
 
     frames = [f for f in traceback.extract_tb(fault.__traceback__) if f.filename.startswith(str(root))]

@@ -28,7 +28,8 @@ class Keyed(KeySource, Protocol):
 
 
 def keys_of(exercise: CourseExercise[Any], variants: Sequence[Keyed], rules: Rules | None = None) -> Batch:
-    """Give many variants of one exercise keys that are computed together; they mark by the course's rules unless told.
+    """Give many variants of one exercise keys that are computed together; they mark by the course's rules
+    unless told.
 
     A variant that has some quantity that does not exist keeps a key of its own, which says why.
     """
@@ -198,7 +199,8 @@ class _KeyOfBatch(Key):
 
 
 def _rows(columns: Mapping[str, Any], count: int, ranks: Mapping[str, int] = NO_RANKS) -> dict[str, list]:
-    """Return a list a quantity, a value a variant; vectors and matrices, whose axes are ``ranks``, as arrays."""
+    """Return a list a quantity, a value a variant; vectors and matrices, whose axes are ``ranks``, as
+    arrays."""
     rows = {}
     for name, values in columns.items():
         array = np.asarray(values)

@@ -1,7 +1,7 @@
 """The lessons of a course, as its files name them: titles, headings, and which of them teach an exercise.
 
-A lesson is ``exercises/lessons/NAME.LANG.md``, Markdown whose first heading is its title, and whose numbered headings,
-``## 8. …``, are its sections.
+A lesson is ``exercises/lessons/NAME.LANG.md``, Markdown whose first heading is its title, and whose numbered
+headings, ``## 8. …``, are its sections.
 """
 
 from __future__ import annotations
@@ -71,7 +71,8 @@ def _check_name(folder: Folder, name: str) -> None:
         would = re.sub(r"\W+", "_", name)
         would = would if would.isidentifier() else f"lesson_{would}"
         raise BadCourse(
-            f"the lesson {name!r}: a name is letters, digits and _, and begins with a letter; rename its files, {would}.LANG.md"
+            f"the lesson {name!r}: a name is letters, digits and _, and begins with a letter; rename "
+            f"its files, {would}.LANG.md"
         )
 
 
@@ -104,8 +105,8 @@ def lesson_sections(folder: Folder, name: str, lang: str) -> Mapping[int, str]:
 
 
 def taught_by(folder: Folder, exercise: str, lang: str) -> tuple[Lesson, ...]:
-    """Return the lessons that teach an exercise, in a language: that of its section of the chapters, then those that ``[lessons]`` of
-    ``course.toml`` names for it.
+    """Return the lessons that teach an exercise, in a language: that of its section of the chapters, then
+    those that ``[lessons]`` of ``course.toml`` names for it.
 
     ``crank_pin = { lesson = "rods", sections = [8] }``, or a list of these; a bare ``"rods"`` is a whole
     lesson. Sections are told by the numbers of their headings. A lesson that is not written in the

@@ -1,4 +1,5 @@
-"""In which order a variant prints the cases of a choice: shuffled by its seed, unless their order is natural."""
+"""In which order a variant prints the cases of a choice: shuffled by its seed, unless their order is
+natural."""
 
 from __future__ import annotations
 
@@ -17,8 +18,8 @@ _LAST = ("none", "neither", "other")  #: cases that stand behind those that they
 
 
 def printed_order(exercise: str, seed: int, part: Part, secret: Secret | None = None) -> tuple[str, ...]:
-    """Return the cases of a part in the order in which the variant of a seed, or of a code of an assignment with its secret,
-    prints them: the same for ever.
+    """Return the cases of a part in the order in which the variant of a seed, or of a code of an assignment
+    with its secret, prints them: the same for ever.
 
     Parts of an exercise that offer the same cases offer them in one order.
     """

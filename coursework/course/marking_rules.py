@@ -20,9 +20,9 @@ _SLIPS = ("sign", "conjugate", "unit", "radians", "turns_a_minute", "other_case"
 
 @dataclass(frozen=True)
 class Rules:
-    """``digits``: significant digits that a student keeps on the way; the tolerance is as wide as that
-    may cost. ``follow_through``: share of the points for a right method from an earlier wrong
-    answer; ``other_case``: the same where it follows from the other case than the stated one. ``prices``: share that
+    """``digits``: significant digits that a student keeps on the way; the tolerance is as wide as that may
+    cost. ``follow_through``: share of the points for a right method from an earlier wrong answer;
+    ``other_case``: the same where it follows from the other case than the stated one. ``prices``: share that
     an error leaves, by kind; ``slip``: of the answer's sign, unit and case together."""
 
     digits: int = 4

@@ -22,7 +22,8 @@ class Recorded(NamedTuple):
 
 
 class Records:
-    """Reads records of one exercise; remembers which parts they ask, since records of one build ask the same."""
+    """Reads records of one exercise; remembers which parts they ask, since records of one build ask the
+    same."""
 
     def __init__(self, name: str, spec: Exercise):
         self.name = name
@@ -44,7 +45,8 @@ class Records:
         version = record.get("version")
         if not isinstance(version, int) or version > current:
             raise BadInput(
-                "{name}: the record is of version {version}, the course has version {current}; mark it with the course it was issued from",
+                "{name}: the record is of version {version}, the course has version {current}; mark it "
+                "with the course it was issued from",
                 name=name,
                 version=version,
                 current=current,
@@ -74,15 +76,18 @@ class Records:
         return given[name]["value"]
 
     def _parts_of(self, points_asked: tuple[tuple[str, float], ...], older: bool) -> tuple[Part, ...]:
-        """Return the parts that a record asks, by id, worth what it says: an assignment may say so, or an older version."""
+        """Return the parts that a record asks, by id, worth what it says: an assignment may say so, or an
+        older version."""
         if (points_asked, older) not in self._parts:
             points = dict(points_asked)
             gone = [i for i in points if self.spec.part(i) is None]
             if gone:
                 template = (
-                    "{name}: a record of an older version asks {gone!r}, which the course no longer has; mark it with the course it was issued from"
+                    "{name}: a record of an older version asks {gone!r}, which the course no longer "
+                    "has; mark it with the course it was issued from"
                     if older
-                    else "{name}: a record of this version asks {gone!r}, which the course does not have; mark it with the course it was issued from"
+                    else "{name}: a record of this version asks {gone!r}, which the course does not have; "
+                    "mark it with the course it was issued from"
                 )
                 raise BadInput(template, name=self.name, gone=gone[0])
             # A record asks what it lists, in its order, whatever the exercise asks of these values now.
@@ -100,7 +105,8 @@ class Records:
         strangers = [case for case in order if case not in part.choices]
         if strangers:
             raise BadInput(
-                "{name}: a record offers {case!r} for {part!r}, whose choices are {choices}; mark it with the course it was issued from",
+                "{name}: a record offers {case!r} for {part!r}, whose choices are {choices}; mark it "
+                "with the course it was issued from",
                 name=self.name,
                 case=strangers[0],
                 part=part.id,
@@ -108,7 +114,8 @@ class Records:
             )
         if len(set(order)) < len(order):
             raise BadInput(
-                "{name}: a record offers a case twice for {part!r}; mark it with the course it was issued from",
+                "{name}: a record offers a case twice for {part!r}; mark it with the course it was "
+                "issued from",
                 name=self.name,
                 part=part.id,
             )
@@ -126,5 +133,6 @@ class Records:
 
 
 def _points(value: Any) -> float:
-    """Return points as a record has them: a whole number stays one, so that the record is written as it was read."""
+    """Return points as a record has them: a whole number stays one, so that the record is written as it was
+    read."""
     return value if isinstance(value, int) and not isinstance(value, bool) else float(value)

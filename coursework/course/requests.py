@@ -18,9 +18,8 @@ from coursework.model import GivenSpec
 class Intake:
     """Takes in the values that requests give to one exercise.
 
-    A value is a number, an array that broadcasts, the name of a case, or a text with a unit
-    (``"0.2286 m"``). Whatever makes no sense raises ``UnknownName``, ``WrongUnit`` or ``WrongValue``, each with
-    what would do.
+    A value is a number, an array that broadcasts, the name of a case, or a text with a unit (``"0.2286 m"``).
+    Whatever makes no sense raises ``UnknownName``, ``WrongUnit`` or ``WrongValue``, each with what would do.
     """
 
     def __init__(
@@ -73,7 +72,8 @@ class Intake:
         return values
 
     def value(self, name: str, value: Any) -> Any:
-        """Return a given value as a float, an array or a case's name, in the canonical unit, within its domain."""
+        """Return a given value as a float, an array or a case's name, in the canonical unit, within its
+        domain."""
         if name in self._structures:
             return _structure(name, value)
         spec = self._given.get(name)
@@ -170,7 +170,8 @@ def _not_positive(name: str, value: float, spec: GivenSpec) -> WrongValue:
 
 
 def _within_a_turn(angle: Any) -> Any:
-    """Return the same direction, without rounding, where whole turns would take digits from what is added to it."""
+    """Return the same direction, without rounding, where whole turns would take digits from what is added to
+    it."""
     if isinstance(angle, float):
         if abs(angle) <= 360:
             return angle

@@ -1,4 +1,5 @@
-"""Secret of an assignment: 128 random bits that key all its draws, so that public words draw none of its papers."""
+"""Secret of an assignment: 128 random bits that key all its draws, so that public words draw none of its
+papers."""
 
 from __future__ import annotations
 
@@ -46,7 +47,8 @@ class Secret:
             )
         if len(set(text.lower())) < _FEWEST_DIGITS:
             raise ValueError(
-                f"a secret is {2 * _BYTES} random hexadecimal digits; found only {len(set(text.lower()))} different "
+                f"a secret is {2 * _BYTES} random hexadecimal digits; found only "
+                f"{len(set(text.lower()))} different "
                 "ones, which is easy to guess"
             )
         return cls(bytes.fromhex(text))
@@ -62,7 +64,8 @@ class Secret:
         return hmac.digest(self._bits, content, "sha256")
 
     def under(self, *words: str) -> Secret:
-        """Return the secret of one use, from which neither this one nor that of other words can be computed."""
+        """Return the secret of one use, from which neither this one nor that of other words can be
+        computed."""
         return Secret(self.digest("under", *words)[:_BYTES])
 
     def __eq__(self, other: object) -> bool:

@@ -1,5 +1,5 @@
-"""The files of a course that an exercise stands on: its own, those that its Python imports and names, those that its texts
-include."""
+"""The files of a course that an exercise stands on: its own, those that its Python imports and names, those
+that its texts include."""
 
 from __future__ import annotations
 

@@ -115,8 +115,8 @@ def render(
     Raises
     ------
     BadStatement
-        Unknown variable, broken template, a dollar without its partner, a formula that cannot be read: says the
-        file and, where it is known, the line.
+        Unknown variable, broken template, a dollar without its partner, a formula that cannot be read: says
+        the file and, where it is known, the line.
     """
     template = _template(path, path.stat().st_mtime_ns, folders, source)
     if isinstance(template, RenderedText):
@@ -165,7 +165,8 @@ def _text(markdown: str, path: Path, source: str, *, formulas: bool) -> Rendered
     return parse(markdown, source)
 
 
-#: Templates whose formulas were read as the first variant has them; those of others are read as they are printed.
+#: Templates whose formulas were read as the first variant has them; those of others are read as they are
+#: printed.
 _proofread: WeakSet[object] = WeakSet()
 
 
@@ -275,7 +276,8 @@ def _jinja(path: Path, changed: int, folders: tuple[Path, ...], source: str) -> 
 
 @lru_cache(maxsize=1024)
 def _names(path: Path, changed: int, folders: tuple[Path, ...], source: str) -> frozenset[str]:
-    """Return the variables of a text and of those that it includes by name; what cannot be read is told where it is rendered."""
+    """Return the variables of a text and of those that it includes by name; what cannot be read is told where
+    it is rendered."""
     template = _template(path, changed, folders, source)
     if isinstance(template, RenderedText):
         return frozenset()
@@ -298,8 +300,8 @@ def _names(path: Path, changed: int, folders: tuple[Path, ...], source: str) -> 
 
 
 class ExerciseTexts:
-    """The texts of one exercise, in every language: of the exercise itself (``exercises``) and of its solution
-    (``solutions``)."""
+    """The texts of one exercise, in every language: of the exercise itself (``exercises``) and of its
+    solution (``solutions``)."""
 
     def __init__(self, folder: Folder, name: str):
         self.folder = folder
@@ -329,7 +331,8 @@ class ExerciseTexts:
         }
 
     def title(self, lang: str) -> str:
-        """Return the statement's title, where no variable stands in it; else, and where there is none, nothing."""
+        """Return the statement's title, where no variable stands in it; else, and where there is none,
+        nothing."""
         path = self.file("exercises", lang)
         first = next(iter(path.read_text(_ENCODING).splitlines()), "") if path.exists() else ""
         return first[2:].strip() if first.startswith("# ") and not _TAG.search(first) else ""

@@ -60,9 +60,16 @@ class Variant:
         chosen = None if self.chosen is None else {part.id: part.points for part in self.parts}
         numbers = None if self._key is None else self._key.numbers
         return _made_anew, (
-            type(self), self.exercise, self.seed, dict(self.given), self.lang, chosen, self._issued, numbers,
+            type(self),
+            self.exercise,
+            self.seed,
+            dict(self.given),
+            self.lang,
+            chosen,
+            self._issued,
+            numbers,
             self._orders,
-        )  # fmt: skip
+        )
 
     @cached_property
     def parts(self) -> tuple[Part, ...]:
@@ -193,7 +200,8 @@ class Variant:
     def solution_text(self) -> RenderedText:
         """The sections of the solution's words; any quantity may stand in them, rounded.
 
-        One that is not on the walk, of a question that is not asked, is computed for the words that it stands in.
+        One that is not on the walk, of a question that is not asked, is computed for the words that it stands
+        in.
         """
         texts, lang = self.exercise.texts, self.lang
         besides = texts.names("solutions", lang) & {*self.exercise.solution.graph.quantities}
@@ -214,7 +222,8 @@ class Variant:
         return values
 
     def letters(self, part: Part) -> Mapping[str, str]:
-        """Return the letters of a choice by case, in the order printed; none of a sheet that was issued without."""
+        """Return the letters of a choice by case, in the order printed; none of a sheet that was issued
+        without."""
         if not part.choices:
             return {}
         if self._orders is not None:
@@ -310,7 +319,8 @@ class Variant:
 
     @cached_property
     def figures(self) -> tuple[Figure | Picture, ...]:
-        """The figures to scale and the pictures, in order: laid out once, shown on every sheet of the variant.
+        """The figures to scale and the pictures, in order: laid out once, shown on every sheet of the
+        variant.
 
         Raises
         ------

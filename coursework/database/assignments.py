@@ -70,7 +70,8 @@ def put_issued(connection: Connection, content: Mapping[str, Any], name: str = "
     Raises
     ------
     BadInput
-        It is no content of ``issued.json``, has no name, or gives somebody another variant than they were issued.
+        It is no content of ``issued.json``, has no name, or gives somebody another variant than they were
+        issued.
     """
     name = name or name_of(content)
     issued = Issued(content, "what was issued", by_name=True)
@@ -162,7 +163,8 @@ def _put_variants(
         elif _in_no_language(variants[key].record) != _in_no_language(item["record"]):
             raise BadInput(
                 (
-                    "{name}: {exercise} {seed} was issued with other data before, and issued papers do not change: choose"
+                    "{name}: {exercise} {seed} was issued with other data before, and issued papers do "
+                    "not change: choose"
                     " another name"
                 ),
                 name=name,
@@ -207,7 +209,8 @@ def _put_dealt(
         if had != item["seed"]:
             raise BadInput(
                 (
-                    "{name}: {student} was issued {exercise} {before}, not {seed}, and issued papers do not change: "
+                    "{name}: {student} was issued {exercise} {before}, not {seed}, and issued papers "
+                    "do not change: "
                     "choose another name"
                 ),
                 name=name,
@@ -281,8 +284,8 @@ def issued_content(
 def _content(
     about: Any, items: list[dict[str, Any]], is_of_person: bool, secret: str | None = ""
 ) -> dict[str, Any]:
-    """Return the content of ``issued.json`` with some items; with the columns of their students if they are of one
-    person."""
+    """Return the content of ``issued.json`` with some items; with the columns of their students if they are
+    of one person."""
     columns = about.columns
     if is_of_person and not about.is_pool:
         names = dict.fromkeys(item["student"] for item in items)

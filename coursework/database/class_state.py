@@ -113,7 +113,8 @@ class ClassState:
     is_whole: bool = True  #: False for a part of the class
 
     def within(self, students: frozenset[str]) -> ClassState:
-        """Return the class as it is for some of its students: nothing of the others, and no row that names nobody."""
+        """Return the class as it is for some of its students: nothing of the others, and no row that names
+        nobody."""
         narrowed: dict[frozenset[str], ClassState] = self.__dict__.setdefault("_narrowed", {})
         if students not in narrowed:
             while len(narrowed) >= _GROUPS:
@@ -147,7 +148,8 @@ class ClassState:
 
     @cached_property
     def coded(self) -> ClassState:
-        """Class as its tables and files tell of it: by codes, in their order, where these stand in place of names."""
+        """Class as its tables and files tell of it: by codes, in their order, where these stand in place of
+        names."""
         if not self.codes:
             return self
 
@@ -309,7 +311,8 @@ class ClassState:
 
     @cached_property
     def codes(self) -> Mapping[str, str]:
-        """Codes that stand in place of names, by student: of an anonymous assignment, until nothing waits any more."""
+        """Codes that stand in place of names, by student: of an anonymous assignment, until nothing waits any
+        more."""
         return self.all_codes if self.waiting else {}
 
     def shown(self, student: str) -> str:

@@ -1,5 +1,6 @@
-"""Summaries of classes: counts of an assignment and the table of its class, computed once for all processes and stored
-with the state of everything on which they depend. A dump omits them, since they can be computed again."""
+"""Summaries of classes: counts of an assignment and the table of its class, computed once for all processes
+and stored with the state of everything on which they depend. A dump omits them, since they can be computed
+again."""
 
 from __future__ import annotations
 

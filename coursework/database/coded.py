@@ -1,4 +1,5 @@
-"""Class by the codes of its papers in place of names, for what is written of it as long as an answer waits."""
+"""Class by the codes of its papers in place of names, for what is written of it as long as an answer
+waits."""
 
 from __future__ import annotations
 

@@ -21,9 +21,18 @@ from coursework.marking.mark import Mark
 
 _SHEET = (marking.c.student, marking.c.exercise, marking.c.seed, marking.c.attempt)
 _LINE = (
-    mark.c.part, mark.c.answer, mark.c.read_as, mark.c.verdict, mark.c.points, mark.c.out_of, mark.c.lang,
-    mark.c.matches, mark.c.in_other_order, mark.c.says, mark.c.feedback,
-)  # fmt: skip
+    mark.c.part,
+    mark.c.answer,
+    mark.c.read_as,
+    mark.c.verdict,
+    mark.c.points,
+    mark.c.out_of,
+    mark.c.lang,
+    mark.c.matches,
+    mark.c.in_other_order,
+    mark.c.says,
+    mark.c.feedback,
+)
 _MATCHES = _LINE.index(mark.c.matches)
 _CHUNK = 5000  #: sheets that are read at once
 
@@ -121,8 +130,8 @@ def _graded(issued: Issued, sheet: LastMarking, lines: _SheetMarks) -> Graded:
 def adjusted_sheets(
     connection: Connection, assignment_id: int, student: str | None = None, course: Course | None = None
 ) -> tuple[Issued, Adjustments, list[Graded]]:
-    """Return what was issued to a class, or to a student, the adjustments, and the current sheets with the decisions and
-    adjustments applied; wider margins where the ``course`` is given."""
+    """Return what was issued to a class, or to a student, the adjustments, and the current sheets with the
+    decisions and adjustments applied; wider margins where the ``course`` is given."""
     sheets = last_markings(connection, assignment_id, student)
     decisions = read_decisions(connection, assignment_id, student)
     issued = issued_of(connection, assignment_id, student=student)
@@ -133,7 +142,8 @@ def adjusted_sheets(
 
 
 def answers_waiting(connection: Connection, assignment_id: int) -> int:
-    """Return the number of answers that wait for a person: unreadable, or to be marked by hand, and not decided."""
+    """Return the number of answers that wait for a person: unreadable, or to be marked by hand, and not
+    decided."""
     last = _last(assignment_id, None).subquery()
     query = select(marking, *_LINE).join(mark).join(last, marking.c.id == last.c.last)
     decisions = read_decisions(connection, assignment_id)

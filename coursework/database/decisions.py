@@ -145,15 +145,35 @@ def history(
     """Return the events in the history of answers, in chronological order; of the given student, exercise or
     part alone."""
     marks = select(
-        marking.c.student, marking.c.exercise, mark.c.part, marking.c.made, literal(""), literal(MARKED), marking.c.seed,
-        marking.c.sitting, mark.c.answer, mark.c.verdict, mark.c.points, mark.c.feedback,
-    ).join(mark)  # fmt: skip
+        marking.c.student,
+        marking.c.exercise,
+        mark.c.part,
+        marking.c.made,
+        literal(""),
+        literal(MARKED),
+        marking.c.seed,
+        marking.c.sitting,
+        mark.c.answer,
+        mark.c.verdict,
+        mark.c.points,
+        mark.c.feedback,
+    ).join(mark)
     marks = marks.where(marking.c.assignment_id == assignment_id, mark.c.verdict != "")
     of = decision.c
     decided = select(
-        of.student, of.exercise, of.part, of.made, of.by, of.kind, of.seed, literal(0), of.answer, literal(""),
-        of.points, of.reason,
-    ).where(of.assignment_id == assignment_id)  # fmt: skip
+        of.student,
+        of.exercise,
+        of.part,
+        of.made,
+        of.by,
+        of.kind,
+        of.seed,
+        literal(0),
+        of.answer,
+        literal(""),
+        of.points,
+        of.reason,
+    ).where(of.assignment_id == assignment_id)
     rows = [
         *connection.execute(marks.order_by(marking.c.id, mark.c.place)),
         *connection.execute(decided.order_by(of.id)),

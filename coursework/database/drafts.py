@@ -49,11 +49,11 @@ def save(
     at: datetime,
     stored: Mapping[str, DraftBox] | None = None,
 ) -> tuple[dict[str, DraftBox], dict[str, DraftBox]]:
-    """Store drafts; return all drafts of the sheet, and the boxes that another page has changed meanwhile. These
-    are not overwritten.
+    """Store drafts; return all drafts of the sheet, and the boxes that another page has changed meanwhile.
+    These are not overwritten.
 
-    An unchanged text is not a change, so that a request sent twice is stored once. ``stored`` are the drafts of
-    the sheet if the caller has read them since it locked the person.
+    An unchanged text is not a change, so that a request sent twice is stored once. ``stored`` are the drafts
+    of the sheet if the caller has read them since it locked the person.
     """
     if stored is None:
         lock_person(connection, person)

@@ -1,4 +1,5 @@
-"""Failed attempts to sign in, counted for all processes of a site. Keys are digests: no login can be read from them."""
+"""Failed attempts to sign in, counted for all processes of a site. Keys are digests: no login can be read
+from them."""
 
 from __future__ import annotations
 

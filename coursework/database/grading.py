@@ -64,8 +64,8 @@ def grade_new(
     Raises
     ------
     BadInput
-        A file that is not there, nothing that can be marked, more points than there are, solutions before their day; then
-        nothing is kept.
+        A file that is not there, nothing that can be marked, more points than there are, solutions before
+        their day; then nothing is kept.
     """
     with store.begin() as connection:
         issued = issued_of(connection, assignment_id)

@@ -119,9 +119,14 @@ class AssignmentOverview(NamedTuple):
 
 
 _LISTED = (
-    assignment.c.id, assignment.c.name, assignment.c.stated, assignment.c.asked, assignment.c.published,
-    assignment.c.created, cast(assignment.c.columns, Text).label("roster"),
-)  # fmt: skip
+    assignment.c.id,
+    assignment.c.name,
+    assignment.c.stated,
+    assignment.c.asked,
+    assignment.c.published,
+    assignment.c.created,
+    cast(assignment.c.columns, Text).label("roster"),
+)
 
 
 def listed_assignments(connection: Connection, assignment_id: int | None = None) -> list[AssignmentOverview]:
@@ -165,7 +170,8 @@ def decided_since(connection: Connection, assignment_id: int, after: int) -> lis
 
 
 def undoable(connection: Connection, assignment_id: int, by: str) -> list[Decision]:
-    """Return the latest batch of decisions of a person that can be undone: no later decision replaces them."""
+    """Return the latest batch of decisions of a person that can be undone: no later decision replaces
+    them."""
     query = select(decision).where(decision.c.assignment_id == assignment_id, decision.c.student != "")
     query = query.order_by(decision.c.id.desc())
     met: set[tuple[str, ...]] = set()

@@ -1,7 +1,8 @@
 """Queue of the jobs of background workers: each job is taken by one worker at a time.
 
-A worker has a lease on the job that it has begun. If the worker is killed, the job is taken again: at once by a worker of the
-same name, by any other after the end of the lease. A job that fails too often is given up, and its fault is stored.
+A worker has a lease on the job that it has begun. If the worker is killed, the job is taken again: at once by
+a worker of the same name, by any other after the end of the lease. A job that fails too often is given up,
+and its fault is stored.
 """
 
 from __future__ import annotations
@@ -22,7 +23,9 @@ class WorkerJob(NamedTuple):
     """Job of a background worker."""
 
     id: int
-    kind: str  #: ``mark``: a submission; ``rescue``: drafts of a person when an assignment has closed; ``prepare``: a person's page
+    #: ``mark``: a submission; ``rescue``: drafts of a person when an assignment has closed; ``prepare``: a
+    #: person's page.
+    kind: str
     assignment: int
     delivery: int | None
     person: int | None

@@ -189,7 +189,8 @@ class Work:
 
 
 def mark_new(course: Course, store: Store, assignment_id: int) -> MarkedNow:
-    """Mark every sheet whose state changed: its record, its answers, the rules, the files of its exercise, the engine.
+    """Mark every sheet whose state changed: its record, its answers, the rules, the files of its exercise,
+    the engine.
 
     Raises
     ------

@@ -71,7 +71,8 @@ def put_person(
 
 
 def _stated_extra_time(columns: Mapping[str, str]) -> dict[str, float | None]:
-    """Return the extra time that a roster states, as values of a row; none for an empty cell, which leaves it as it was."""
+    """Return the extra time that a roster states, as values of a row; none for an empty cell, which leaves it
+    as it was."""
     if not cell(columns, EXTRA_TIME):
         return {}
     try:
@@ -81,8 +82,8 @@ def _stated_extra_time(columns: Mapping[str, str]) -> dict[str, float | None]:
 
 
 def _changed_extra_time(had: Mapping[str, str], columns: Mapping[str, str]) -> dict[str, float | None]:
-    """Return the extra time that a roster states otherwise than the one before; one that was set by hand meanwhile
-    stays."""
+    """Return the extra time that a roster states otherwise than the one before; one that was set by hand
+    meanwhile stays."""
     stated = _stated_extra_time(columns)
     return stated if stated != _stated_extra_time(had) else {}
 

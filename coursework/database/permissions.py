@@ -1,7 +1,7 @@
 """Roles of people on the site, and the permissions of each role.
 
-The roles and permissions are data: :data:`PERMISSIONS` is the whole table. An assistant has the permissions of the table in
-named assignments and groups alone (:class:`Area`); everybody else has theirs everywhere.
+The roles and permissions are data: :data:`PERMISSIONS` is the whole table. An assistant has the permissions
+of the table in named assignments and groups alone (:class:`Area`); everybody else has theirs everywhere.
 """
 
 from __future__ import annotations

@@ -120,7 +120,10 @@ def conditions(
         "delivery": (delivery, delivery.c.person_id == known_as.person),
         "scanned": (scanned, scanned.c.id.in_(ids_of(connection, scanned, known_as))),
         "typed": (typed, typed.c.id.in_(ids_of(connection, typed, known_as))),
-        "dealt": (dealt, or_(dealt.c.person_id == known_as.person, dealt.c.id.in_(_dealt(connection, known_as)))),
+        "dealt": (
+            dealt,
+            or_(dealt.c.person_id == known_as.person, dealt.c.id.in_(_dealt(connection, known_as))),
+        ),
         "extension": (extension, extension.c.person_id == known_as.person),
         "paper_start": (paper_start, paper_start.c.person_id == known_as.person),
         "draft": (draft, draft.c.person_id == known_as.person),
@@ -133,7 +136,7 @@ def conditions(
         "area": (area, area.c.person_id == known_as.person),
         "account": (account, account.c.person_id == known_as.person),
         "person": (person, person.c.id == known_as.person),
-    }  # fmt: skip
+    }
 
 
 def launch_sessions(person_id: int) -> ColumnElement[bool]:
@@ -225,11 +228,17 @@ def _papers(connection: Connection, mine: ColumnElement[bool]) -> list[dict[str,
     """Return the variants issued to the person, with their given values."""
     query = (
         select(
-            assignment.c.id.label("assignment_id"), assignment.c.name.label("assignment"), dealt.c.student, dealt.c.sitting,
-            dealt.c.lang, variant.c.exercise, variant.c.seed, variant.c.record,
+            assignment.c.id.label("assignment_id"),
+            assignment.c.name.label("assignment"),
+            dealt.c.student,
+            dealt.c.sitting,
+            dealt.c.lang,
+            variant.c.exercise,
+            variant.c.seed,
+            variant.c.record,
         )
         .select_from(dealt.join(variant).join(assignment))
         .where(mine)
         .order_by(dealt.c.id)
-    )  # fmt: skip
+    )
     return [dict(row._mapping) for row in connection.execute(query)]

@@ -23,7 +23,8 @@ def _now() -> datetime:
 class PersonProgress:
     """Progress of one person, or that of one exercise; an entry is stored once, however often it is added.
 
-    ``connection`` reads it in a transaction of the caller. While ``waits`` is True, new entries are stored by :meth:`save` alone.
+    ``connection`` reads it in a transaction of the caller. While ``waits`` is True, new entries are stored by
+    :meth:`save` alone.
     """
 
     def __init__(

@@ -1,8 +1,9 @@
 """Publication of an assignment: its dates, the number of attempts, late submissions, and the release of marks
 and answers.
 
-Dates are compared with the server's clock alone. A date that has passed is recorded (:func:`record_passed_date`), so that a clock that is
-set back neither reopens an assignment nor withdraws what was released.
+Dates are compared with the server's clock alone. A date that has passed is recorded
+(:func:`record_passed_date`), so that a clock that is set back neither reopens an assignment nor withdraws
+what was released.
 """
 
 from __future__ import annotations
@@ -280,7 +281,8 @@ def published(connection: Connection, number: int) -> Publication | None:
 
 
 def publications_of(connection: Connection, numbers: Sequence[int] | None = None) -> dict[int, Publication]:
-    """Return the publications of those of some assignments that are published; of all assignments if ``numbers`` is None."""
+    """Return the publications of those of some assignments that are published; of all assignments if
+    ``numbers`` is None."""
     query = select(assignment.c.id, assignment.c.published).where(assignment.c.published.is_not(None))
     query = query if numbers is None else query.where(assignment.c.id.in_(numbers))
     return {row.id: Publication.of(row.published) for row in connection.execute(query)}
@@ -363,8 +365,8 @@ def _extensions_query() -> Select[Any]:
 def longer_for(
     connection: Connection, publications: Mapping[int, Publication]
 ) -> dict[int, dict[int, Publication]]:
-    """Return the publications as they apply to those who may have longer than the class, by assignment: to people
-    with an extension, or with extra time on a paper with a working time."""
+    """Return the publications as they apply to those who may have longer than the class, by assignment: to
+    people with an extension, or with extra time on a paper with a working time."""
     more = extensions_by_assignment(connection, list(publications))
     timed = [number for number, one in publications.items() if one.minutes is not None]
     times: dict[int, dict[int, Any]] = {}
@@ -412,12 +414,17 @@ def _times_query(*conditions: ColumnElement[bool]) -> Select[Any]:
     """Return a query of people's current papers of assignments, with extra time and start."""
     numbers: BindParameter[Any] = bindparam("numbers", expanding=True)
     papers = (
-        select(variant.c.assignment_id, dealt.c.person_id, func.max(dealt.c.sitting).label("sitting"), person.c.extra_time)
+        select(
+            variant.c.assignment_id,
+            dealt.c.person_id,
+            func.max(dealt.c.sitting).label("sitting"),
+            person.c.extra_time,
+        )
         .select_from(person.join(dealt, dealt.c.person_id == person.c.id).join(variant))
         .where(variant.c.assignment_id.in_(numbers), *conditions)
         .group_by(variant.c.assignment_id, dealt.c.person_id, person.c.extra_time)
         .subquery()
-    )  # fmt: skip
+    )
     mine, begun = papers.c, paper_start.c
     of_paper = (
         begun.assignment_id == mine.assignment_id,
@@ -443,7 +450,8 @@ def _running_query() -> Select[Any]:
 
 
 def start(connection: Connection, number: int, person_id: int, sitting: int, at: datetime) -> None:
-    """Record the start of a paper, in a transaction that has locked the person; a second one changes nothing."""
+    """Record the start of a paper, in a transaction that has locked the person; a second one changes
+    nothing."""
     row = {"assignment_id": number, "person_id": person_id, "sitting": sitting}
     known = connection.execute(select(paper_start.c.id).filter_by(**row)).first()
     if known is None:
@@ -522,19 +530,27 @@ def student_assignments(
     parameters = {"person": person} if number is None else {"person": person, "number": number}
     return [
         StudentAssignment(
-            row.id, row.name, row.stated or {}, row.student,
+            row.id,
+            row.name,
+            row.stated or {},
+            row.student,
             None if row.published is None else Publication.of(row.published),
-            None if row.made is None else Extension(row.ext_closes, row.ext_tries, row.reason, row.by, row.made, row.ext_minutes),
-            row.asked or {}, row.extra_time or 0.0, row.started, row.sitting,
+            None
+            if row.made is None
+            else Extension(row.ext_closes, row.ext_tries, row.reason, row.by, row.made, row.ext_minutes),
+            row.asked or {},
+            row.extra_time or 0.0,
+            row.started,
+            row.sitting,
         )
         for row in connection.execute(_student_assignments_query(number is not None), parameters)
-    ]  # fmt: skip
+    ]
 
 
 @cache
 def _student_assignments_query(is_of_one: bool) -> Select[Any]:
-    """Return the query of :func:`student_assignments`, cached since many requests execute it, with the person's last extension
-    and the start of the current paper."""
+    """Return the query of :func:`student_assignments`, cached since many requests execute it, with the
+    person's last extension and the start of the current paper."""
     columns = assignment.c
     last_sitting = func.max(dealt.c.sitting).label("sitting")
     theirs = select(variant.c.assignment_id, dealt.c.student, last_sitting).join(variant)
@@ -550,10 +566,22 @@ def _student_assignments_query(is_of_one: bool) -> Select[Any]:
     of_person = more.assignment_id == columns.id, more.person_id == bindparam("person")
     given = select(last).where(*of_person).correlate(assignment).scalar_subquery()
     query = select(
-        columns.id, columns.name, columns.stated, columns.published, columns.asked, mine.c.student, mine.c.sitting,
-        more.closes.label("ext_closes"), more.tries.label("ext_tries"), more.minutes.label("ext_minutes"), more.reason, more.by,
-        more.made, person.c.extra_time, begun.started,
-    )  # fmt: skip
+        columns.id,
+        columns.name,
+        columns.stated,
+        columns.published,
+        columns.asked,
+        mine.c.student,
+        mine.c.sitting,
+        more.closes.label("ext_closes"),
+        more.tries.label("ext_tries"),
+        more.minutes.label("ext_minutes"),
+        more.reason,
+        more.by,
+        more.made,
+        person.c.extra_time,
+        begun.started,
+    )
     query = query.select_from(
         assignment.join(mine, mine.c.assignment_id == columns.id)
         .join(person, person.c.id == bindparam("person"))

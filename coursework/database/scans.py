@@ -28,9 +28,11 @@ class ScannedPage(NamedTuple):
 def put_scanned(connection: Connection, assignment_id: int, page: ScannedPage, picture: bytes) -> bool:
     """Store a page; return True if it is new. An existing page stays as it is."""
     row = {
-        **page._asdict(), "kept": dict(page.kept), "assignment_id": assignment_id,
+        **page._asdict(),
+        "kept": dict(page.kept),
+        "assignment_id": assignment_id,
         "picture": base64.b64encode(picture).decode(),
-    }  # fmt: skip
+    }
     return insert_unless_there(connection, scanned, row, ("assignment_id", "page")) is not None
 
 
@@ -89,7 +91,8 @@ def withdraw_typed(
 
 
 def _current(connection: Connection, assignment_id: int) -> list[Row[Any]]:
-    """Return the columns of :class:`Typed` with who typed them and when: the last of each place that is not withdrawn."""
+    """Return the columns of :class:`Typed` with who typed them and when: the last of each place that is not
+    withdrawn."""
     columns = [*(typed.c[name] for name in Typed._fields), typed.c.by, typed.c.made]
     in_order = select(*columns).where(typed.c.assignment_id == assignment_id).order_by(typed.c.id)
     last: dict[tuple[str, ...], Row[Any]] = {}

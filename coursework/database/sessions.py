@@ -1,7 +1,8 @@
 """Sessions: a row for each browser with a signed-in person. The row of a session is deleted when the session
 ends.
 
-The browser holds a random token; the database keeps its SHA-256 alone, so that nobody who reads the database can use it.
+The browser holds a random token; the database keeps its SHA-256 alone, so that nobody who reads the database
+can use it.
 """
 
 from __future__ import annotations
@@ -53,8 +54,9 @@ def session_of(connection: Connection, token: str, at: datetime) -> Any | None:
     """Return the session of a token with its person's columns, or None.
 
     The row has ``session_id``, ``session_created``, ``session_seen`` and ``taken``
-    (:func:`coursework.database.settings.reloads_of`) beside those of :func:`coursework.database.people.person_by_id`. There is none for a token that is unknown, ended or expired, and none of a
-    person whose account is closed.
+    (:func:`coursework.database.settings.reloads_of`) beside those of
+    :func:`coursework.database.people.person_by_id`. There is none for a token that is unknown, ended or
+    expired, and none of a person whose account is closed.
     """
     if len(token) != TOKEN_LENGTH:
         return None

@@ -31,7 +31,8 @@ def secret(connection: Connection) -> bytes:
         return bytes.fromhex(stored)
     except ValueError:
         raise BadInput(
-            "the key that signs cookies is damaged in the database: restore a backup, or delete the row 'secret' of the table "
+            "the key that signs cookies is damaged in the database: restore a backup, or delete the "
+            "row 'secret' of the table "
             "'setting', which signs everybody out"
         ) from None
 

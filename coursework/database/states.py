@@ -18,7 +18,8 @@ from coursework.course.sources import sources
 _PACKAGE = Path(__file__).parent.parent
 #: Folders and files of the package that affect marks.
 ENGINE = (
-    "messages.py errors.py degrees.py language system kinematics markup figures structure mechanics parsing quantities "
+    "messages.py errors.py degrees.py language system kinematics markup figures structure mechanics "
+    "parsing quantities "
     "kinds model.py solution.py course marking gradebook/class_marking.py"
 ).split()
 

@@ -29,7 +29,8 @@ _PATIENCE = 30  #: seconds for which a write waits for another
 class Store:
     """Database with the tables of :mod:`coursework.database.tables`.
 
-    ``url`` is SQLAlchemy's: ``sqlite:///marks.db``, ``postgresql+psycopg://user@host/name``; a path alone is a file of SQLite.
+    ``url`` is SQLAlchemy's: ``sqlite:///marks.db``, ``postgresql+psycopg://user@host/name``; a path alone is
+    a file of SQLite.
 
     Raises
     ------
@@ -43,7 +44,8 @@ class Store:
             self.engine: Engine = create_engine(self.url, **_options(self.url))
         except (ArgumentError, NoSuchModuleError) as fault:
             raise BadInput(
-                "no database {database!r}: {problem}; a file is sqlite:///marks.db, a server postgresql+psycopg://user@host/name",
+                "no database {database!r}: {problem}; a file is sqlite:///marks.db, a server "
+                "postgresql+psycopg://user@host/name",
                 database=_without_password(url),
                 problem=fault,
             ) from fault
@@ -144,7 +146,8 @@ class Store:
                 _one_at_a_time(connection)
                 if version := later_version(connection):
                     raise BadInput(
-                        "{database} was written by a later version of coursework ({problem}): update the package",
+                        "{database} was written by a later version of coursework ({problem}): update "
+                        "the package",
                         database=_without_password(self.url),
                         problem=version,
                     )
@@ -157,7 +160,8 @@ class Store:
             ) from fault
         except UnicodeDecodeError as fault:  # SQLite quotes what is damaged
             raise BadInput(
-                "{database} cannot be opened: its tables are damaged; keep a copy of the file and restore a backup, or see what 'sqlite3 FILE .recover' finds",
+                "{database} cannot be opened: its tables are damaged; keep a copy of the file and "
+                "restore a backup, or see what 'sqlite3 FILE .recover' finds",
                 database=_without_password(self.url),
             ) from fault
 
@@ -253,7 +257,8 @@ def _options(url: str) -> dict[str, Any]:
 
 
 def _sqlite_settings(connection: Any, record: Any) -> None:
-    """Configure SQLite: concurrent readers, durable commits, foreign keys, and overwriting of deleted data."""
+    """Configure SQLite: concurrent readers, durable commits, foreign keys, and overwriting of deleted
+    data."""
     connection.isolation_level = None  # transactions are begun by :func:`_begin_writing`
     cursor = connection.cursor()
     for setting in (

@@ -145,7 +145,8 @@ def next_number(connection: Connection, assignment_id: int, person_id: int, stud
 
 @cache
 def _sittings_query() -> CompoundSelect[Any]:
-    """Return the query of :func:`next_number`, cached: the attempts in files, on the site, and those that are marked.
+    """Return the query of :func:`next_number`, cached: the attempts in files, on the site, and those that are
+    marked.
 
     An attempt under another spelling of the name is known once it is marked.
     """

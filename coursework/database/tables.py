@@ -1,9 +1,9 @@
 """Tables of the database. A row that records an event is added and never changed; the last of its kind is the
 current one.
 
-Times are UTC. Texts are as received. JSON contains what other files define: records (:mod:`coursework.course.records`), what
-``issued.json`` states, entries of progress (:mod:`coursework.selfstudy.progress`); it is kept as it was written, keys in
-their order.
+Times are UTC. Texts are as received. JSON contains what other files define: records
+(:mod:`coursework.course.records`), what ``issued.json`` states, entries of progress
+(:mod:`coursework.selfstudy.progress`); it is kept as it was written, keys in their order.
 """
 
 from __future__ import annotations
@@ -98,7 +98,8 @@ def _of(table: str, *, null: bool = False, index: bool = False) -> Column[int]:
 
 # ------------------------------------------------------------------------- people
 
-#: Person who answers, teaches or both. ``who`` is the identifier in a roster: a number, an e-mail, else the folded name.
+#: Person who answers, teaches or both. ``who`` is the identifier in a roster: a number, an e-mail, else the
+#: folded name.
 person = Table(
     "person",
     METADATA,
@@ -207,7 +208,8 @@ variant = Table(
     UniqueConstraint("assignment_id", "exercise", "seed"),
 )
 
-#: Assignment of a variant to a student, with sitting and language. ``place`` is its position in ``issued.json``.
+#: Assignment of a variant to a student, with sitting and language. ``place`` is its position in
+#: ``issued.json``.
 dealt = Table(
     "dealt",
     METADATA,
@@ -240,7 +242,8 @@ delivery = Table(
     UniqueConstraint("assignment_id", "person_id", "number"),
 )
 
-#: Answer as received. ``place`` numbers answers, rejected rows and platform files of a submission in one order.
+#: Answer as received. ``place`` numbers answers, rejected rows and platform files of a submission in one
+#: order.
 answer = Table(
     "answer",
     METADATA,
@@ -260,7 +263,8 @@ answer = Table(
     ),  #: statements of a platform about it (:class:`coursework.gradebook.rows.RowOrigin`)
 )
 
-#: Drawing of an exercise, as it was when the answers were submitted (:mod:`coursework.figures.student_drawing`).
+#: Drawing of an exercise, as it was when the answers were submitted
+#: (:mod:`coursework.figures.student_drawing`).
 drawing = Table(
     "drawing",
     METADATA,
@@ -296,8 +300,8 @@ seen = Table(
 
 # -------------------------------------------------------------------------- marks
 
-#: Marking of a sheet, with the state of its answers, course and engine. The last one of a sheet counts; an empty state means
-#: that the sheet has no answers any more.
+#: Marking of a sheet, with the state of its answers, course and engine. The last one of a sheet counts; an
+#: empty state means that the sheet has no answers any more.
 marking = Table(
     "marking",
     METADATA,
@@ -338,7 +342,8 @@ mark = Table(
     Column("feedback", SafeText, nullable=False),
 )
 
-#: Decision of a person on an answer; it counts until the next one on the same answer. ``answer`` is the text that they saw.
+#: Decision of a person on an answer; it counts until the next one on the same answer. ``answer`` is the text
+#: that they saw.
 decision = Table(
     "decision",
     METADATA,
@@ -382,8 +387,8 @@ worksheet = Table(
     UniqueConstraint("assignment_id", "file"),
 )
 
-#: Page of a scan: its reading (:class:`coursework.scanning.scan_store.PageScan`), and its picture, a JPEG in base64. A
-#: file without a readable page has one row without a number.
+#: Page of a scan: its reading (:class:`coursework.scanning.scan_store.PageScan`), and its picture, a JPEG in
+#: base64. A file without a readable page has one row without a number.
 scanned = Table(
     "scanned",
     METADATA,
@@ -399,7 +404,8 @@ scanned = Table(
     UniqueConstraint("assignment_id", "page"),
 )
 
-#: Text typed by a person for an unreadable place of a scan: the last of a place counts. ``seen`` are the pages shown to them.
+#: Text typed by a person for an unreadable place of a scan: the last of a place counts. ``seen`` are the
+#: pages shown to them.
 typed = Table(
     "typed",
     METADATA,
@@ -445,7 +451,8 @@ draft = Table(
     UniqueConstraint("person_id", "sheet", "box"),
 )
 
-#: Cached page of a paper, made before the assignment opens, without typed text (:mod:`coursework.database.prepared`).
+#: Cached page of a paper, made before the assignment opens, without typed text
+#: (:mod:`coursework.database.prepared`).
 prepared = Table(
     "prepared",
     METADATA,
@@ -489,7 +496,8 @@ extension = Table(
     Column("made", UTCDateTime, nullable=False),
 )
 
-#: Start of a paper with a working time, which counts from then on; a make-up is another paper, and has its own.
+#: Start of a paper with a working time, which counts from then on; a make-up is another paper, and has its
+#: own.
 paper_start = Table(
     "paper_start",
     METADATA,
@@ -502,8 +510,8 @@ paper_start = Table(
     UniqueConstraint("assignment_id", "person_id", "sitting"),
 )
 
-#: Job of a background worker: a submission to mark, drafts to submit after the closing date, a page to prepare. The row is
-#: deleted when the job is done; one with a ``fault`` is given up and needs a person.
+#: Job of a background worker: a submission to mark, drafts to submit after the closing date, a page to
+#: prepare. The row is deleted when the job is done; one with a ``fault`` is given up and needs a person.
 job = Table(
     "job",
     METADATA,
@@ -567,7 +575,8 @@ lti_session = Table(
     info={"fleeting": True},
 )
 
-#: Last launch of a student in a link, without e-mail and number, and the score that the platform receives for it.
+#: Last launch of a student in a link, without e-mail and number, and the score that the platform receives for
+#: it.
 lti_launch = Table(
     "lti_launch",
     METADATA,

@@ -14,11 +14,12 @@ numbers in mm, y up; angles are degrees from +x, counter-clockwise::
     figure.svg(), figure.outlined_svg(), figure.png(ppi=200), figure.pdf()
     figure.scale, figure.size_mm, figure.labels()
 
-The drawing is scaled to the largest size whose frame, labels included, fits ``paper_mm``
-(110 by 75 mm unless told), with one scale for x and y; a sheet lays it out again for the room it
-has, ``figure.fitted(112, 62)``. ``Figure(..., scale=1)`` has that scale instead, and ``figure.beginning(n)`` is its first n elements in the same frame. Symbols (pins, hatching, blocks,
-arrow heads, letters) keep their size on paper. Mechanism points are printed to 0.1 mm and
-directions of symbols to a whole degree: the file says no more than a ruler and a protractor.
+The drawing is scaled to the largest size whose frame, labels included, fits ``paper_mm`` (110 by 75 mm unless
+told), with one scale for x and y; a sheet lays it out again for the room it has, ``figure.fitted(112, 62)``.
+``Figure(..., scale=1)`` has that scale instead, and ``figure.beginning(n)`` is its first n elements in the
+same frame. Symbols (pins, hatching, blocks, arrow heads, letters) keep their size on paper. Mechanism points
+are printed to 0.1 mm and directions of symbols to a whole degree: the file says no more than a ruler and a
+protractor.
 
 **Joints.** ``ground_pivot(p, label)`` a pin on a hatched support, which turns away from the
 links; ``pin(p, label)`` a moving pin; ``point(p, label)`` a dot; ``contact(p, label)`` a larger
@@ -46,8 +47,9 @@ radius=)`` and ``rotation_arrow(center, radius, from_deg, to_deg, label)``, whos
 **Sections.** ``section(points, label, angle=45)`` a cut body, hatched, its label in a gap of the
 hatching (use ``angle=-45`` for its neighbour); ``ball(center, radius, label)`` a tinted circle.
 
-**Drawn machines.** ``shape(points, shade, closed=True, thin=False)`` a part of any outline and ``disc(center, radius, shade)`` a
-round one, each on those before it; shades are ``none``, ``white``, ``light``, ``mid``, ``dark``, ``black`` and ``glass``.
+**Drawn machines.** ``shape(points, shade, closed=True, thin=False)`` a part of any outline and
+  ``disc(center, radius, shade)`` a round one, each on those before it; shades are ``none``, ``white``,
+  ``light``, ``mid``, ``dark``, ``black`` and ``glass``.
 
 **Labels** are symbols in a small LaTeX (``r_1``, ``O_4``, ``\\theta_2``, ``\\dot{\\psi}``, ``R+r``), set
 in italics, or plain words (anything with a space, or three letters and more), set upright.

@@ -29,8 +29,8 @@ Bars = tuple[tuple[complex, complex], ...]
 class Element:
     """Element of a figure, in mechanism coordinates: complex numbers, mm, y up; degrees from +x.
 
-    Each subclass is a frozen dataclass of the fields that it names. All share these methods: compiling some for each
-    class would double the time in which a figure's module is loaded.
+    Each subclass is a frozen dataclass of the fields that it names. All share these methods: compiling some
+    for each class would double the time in which a figure's module is loaded.
     """
 
     if TYPE_CHECKING:
@@ -46,7 +46,8 @@ class Element:
         if unknown or len(given) < len(values) + len(named):
             requested = ", ".join(name for name, _, _ in text)
             raise TypeError(
-                f"{type(self).__name__} takes {requested}, each once; found {len(values)} values and {[*named]}"
+                f"{type(self).__name__} takes {requested}, each once; found {len(values)} values and "
+                f"{[*named]}"
             )
         for name, kind, default in text:
             value = given.get(name, default)

@@ -1,5 +1,5 @@
-"""Charts of tables and measurements as SVG: bars, histograms, points on logarithmic axes. The same data give the
-same bytes."""
+"""Charts of tables and measurements as SVG: bars, histograms, points on logarithmic axes. The same data give
+the same bytes."""
 
 from __future__ import annotations
 
@@ -27,9 +27,14 @@ _LETTER = re.compile(r'<path transform="([^"]*)" d="([^"]*)"/>')
 COLOURS = (LINE, WRONG, RIGHT, "#8a5a00", "#6a3d9a", "#007a87", "#555")
 _DASHES = ("", "2 0.8", "2 0.8 0.5 0.8", "0.5 0.7")
 _MARKS = (
-    "m-1 0a1 1 0 1 0 2 0a1 1 0 1 0 -2 0z", "m-.9 -.9h1.8v1.8h-1.8z", "m0 -1.3l1.3 1.3l-1.3 1.3l-1.3 -1.3z",
-    "m0 -1.2l1.1 2h-2.2z", "m0 1.2l1.1 -2h-2.2z", "m-1.2 0h2.4m-1.2 -1.2v2.4", "m-.9 -.9l1.8 1.8m-1.8 0l1.8 -1.8",
-)  # fmt: skip
+    "m-1 0a1 1 0 1 0 2 0a1 1 0 1 0 -2 0z",
+    "m-.9 -.9h1.8v1.8h-1.8z",
+    "m0 -1.3l1.3 1.3l-1.3 1.3l-1.3 -1.3z",
+    "m0 -1.2l1.1 2h-2.2z",
+    "m0 1.2l1.1 -2h-2.2z",
+    "m-1.2 0h2.4m-1.2 -1.2v2.4",
+    "m-.9 -.9l1.8 1.8m-1.8 0l1.8 -1.8",
+)
 
 
 def bars(
@@ -37,7 +42,8 @@ def bars(
 ) -> str:
     """Return a chart of horizontal bars, the first at the top, as SVG.
 
-    A row is a label, a length, and what is written at the bar's end; the axis reaches ``full``, or the longest bar.
+    A row is a label, a length, and what is written at the bar's end; the axis reaches ``full``, or the
+    longest bar.
     """
     texts = [(_text(label), length, written(end)) for label, length, end in rows]
     most = full or max((length for _, length, _ in texts), default=0) or 1
@@ -92,8 +98,8 @@ def scatter(
     *,
     integers: bool = False,
 ) -> str:
-    """Return named series of joined points on two logarithmic axes, as SVG; ``integers`` puts whole numbers on a
-    linear axis. A point without a logarithm is left out."""
+    """Return named series of joined points on two logarithmic axes, as SVG; ``integers`` puts whole numbers
+    on a linear axis. A point without a logarithm is left out."""
 
     def along(value: float) -> float:
         return value if integers else math.log10(value)
@@ -150,7 +156,8 @@ def _series(position: int, run: Sequence[complex], marked: complex | None = None
 
 
 def _page(height: float, body: Sequence[str], title: str) -> str:
-    """Return an SVG in which each letter has its outline once: a report has many charts, as pictures of their own."""
+    """Return an SVG in which each letter has its outline once: a report has many charts, as pictures of their
+    own."""
     head, svg = page((_WIDTH, height), body, title).split("\n", 1)
     names: dict[str, str] = {}
 
@@ -198,7 +205,10 @@ def _grid(lines: Sequence[str]) -> list[str]:
 
 
 def _box(x: float, y: float, width: float, height: float) -> str:
-    return f'<path d="M{number(x)} {number(y)}h{number(width)}v{number(height)}h{number(-width)}z" fill="{LINE}"/>'
+    return (
+        f'<path d="M{number(x)} {number(y)}h{number(width)}v{number(height)}h{number(-width)}z" '
+        f'fill="{LINE}"/>'
+    )
 
 
 def _foot(

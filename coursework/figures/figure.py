@@ -167,7 +167,8 @@ class Figure(_Drawn):
 
     @cached_property
     def _settled(self) -> tuple[Element, ...]:
-        """Elements rounded to ten digits of the drawing's extent, so that the layout depends on no last bit."""
+        """Elements rounded to ten digits of the drawing's extent, so that the layout depends on no last
+        bit."""
         points = [z for element in self.elements for z in element.reach()]
         size = max((max(abs(z.real), abs(z.imag)) for z in points), default=0.0)
         if not size > 0:
@@ -198,7 +199,8 @@ class Figure(_Drawn):
             return self._laid_out(self.fixed_scale)
         low, high = self._extent
         size = high - low
-        # The paper that symbols and labels take: guessed, then as if each label had its best place, then as laid out.
+        # The paper that symbols and labels take: guessed, then as if each label had its best place, then as
+        # laid out.
         scale = self._fitting(size, complex(14, 12))
         paper = self._drawn(scale)[0]
         low, high = _bounds(paper.ink, [z for wish in paper.wishes for z in wish.hoped()])
@@ -216,7 +218,8 @@ class Figure(_Drawn):
         )
 
     def _grown(self, layout: _Layout, size: complex, refused: float) -> _Layout:
-        """Return a larger layout that fits, using the room that the labels leave, below a ``refused`` scale."""
+        """Return a larger layout that fits, using the room that the labels leave, below a ``refused``
+        scale."""
         for _ in range(_GROWTHS):
             symbols = layout.high - layout.low - layout.scale * size
             wider = min(self._fitting(size, symbols), (layout.scale + refused) / 2)

@@ -58,8 +58,8 @@ _RIM = 30  #: white round letters, hundredths of their size
 class MotionTrack:
     """Drawn line or mark over the instants.
 
-    ``numbers`` has a row an instant, mm on paper, y down, from the top left corner: of a ``path`` the coordinates
-    of its points in turn, of what is carried about (``mark``) those of its origin.
+    ``numbers`` has a row an instant, mm on paper, y down, from the top left corner: of a ``path`` the
+    coordinates of its points in turn, of what is carried about (``mark``) those of its origin.
     """
 
     numbers: np.ndarray
@@ -106,7 +106,8 @@ class Arrow:
 
 @dataclass(frozen=True)
 class TracedPoint:
-    """Point over the instants, and its ``path``, at as many places as it needs; ``closed`` if that returns to its start."""
+    """Point over the instants, and its ``path``, at as many places as it needs; ``closed`` if that returns to
+    its start."""
 
     p: np.ndarray
     point: str
@@ -133,7 +134,8 @@ class MovingDrawing:
     corner: complex = 0j  #: top left corner, mm on paper from the origin of the mechanism, y up
 
     def on_paper(self, p: complex | np.ndarray) -> np.ndarray:
-        """Return points of the mechanism (mm, complex, shape ``(...)``) as x, y in the drawing, mm, y down: ``(..., 2)``."""
+        """Return points of the mechanism (mm, complex, shape ``(...)``) as x, y in the drawing, mm, y down:
+        ``(..., 2)``."""
         off = np.asarray(p) * self.scale - self.corner
         return np.stack([off.real, -off.imag], axis=-1)
 
@@ -387,7 +389,8 @@ def _spot_tracks(spot: TracedPoint, scale: float) -> list[MotionTrack]:
 
 
 def _corners(path: np.ndarray, allowed: float) -> np.ndarray:
-    """Return the indices of those points that a line needs, in order: no other lies farther from it than allowed."""
+    """Return the indices of those points that a line needs, in order: no other lies farther from it than
+    allowed."""
     needed, spans = {0, len(path) - 1}, [(0, len(path) - 1)]
     while spans:
         start, end = spans.pop()

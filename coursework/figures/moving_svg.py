@@ -26,7 +26,8 @@ def moving_svg(
     shown
         The drawing at every instant.
     order
-        The instants in the order in which they are shown; the last is the first again where the motion goes round.
+        The instants in the order in which they are shown; the last is the first again where the motion goes
+        round.
     first
         The instant shown where nothing moves.
     seconds
@@ -57,8 +58,8 @@ _FEW_LABELS = 5  #: of a still that has room for them
 def still_svgs(
     displayed: MovingDrawing, instants: Sequence[int], *, title: str, words: str, lang: str
 ) -> tuple[str, ...]:
-    """Return the drawing at some instants as SVG; only the first has the legend and, where labels would crowd,
-    the labels."""
+    """Return the drawing at some instants as SVG; only the first has the legend and, where labels would
+    crowd, the labels."""
     everything = displayed.tracks
     drawn = [track for track in everything if not track.key]
     bare = [track for track in drawn if not track.is_label]
@@ -73,16 +74,20 @@ def _document(
     displayed: MovingDrawing, lines: Iterable[str], title: str, words: str, lang: str, style: str = ""
 ) -> str:
     width, height = (f"{x:.6g}" for x in displayed.size)
-    return "\n".join([
-        f'<svg xmlns="http://www.w3.org/2000/svg" width="{width}mm" height="{height}mm" '
-        f'viewBox="0 0 {width} {height}" role="img" lang="{lang}">',
-        f"<title>{escape(title)}</title>",
-        f"<desc>{escape(words)}</desc>",
-        *filter(None, [style]),
-        f'<rect width="{width}" height="{height}" fill="#fff"/>',
-        '<g fill="none" stroke="#000" stroke-linecap="round" stroke-linejoin="round">', *lines, "</g>",
-        "</svg>\n",
-    ])  # fmt: skip
+    return "\n".join(
+        [
+            f'<svg xmlns="http://www.w3.org/2000/svg" width="{width}mm" height="{height}mm" '
+            f'viewBox="0 0 {width} {height}" role="img" lang="{lang}">',
+            f"<title>{escape(title)}</title>",
+            f"<desc>{escape(words)}</desc>",
+            *filter(None, [style]),
+            f'<rect width="{width}" height="{height}" fill="#fff"/>',
+            '<g fill="none" stroke="#000" stroke-linecap="round" stroke-linejoin="round">',
+            *lines,
+            "</g>",
+            "</svg>\n",
+        ]
+    )
 
 
 def _animate(track: MotionTrack, order: Sequence[int], times: str, seconds: float) -> str:

@@ -186,7 +186,8 @@ class FigurePaper:
 
 
 def _widest_gap(ways: Sequence[complex]) -> complex:
-    """Return the middle of the widest angle between the given directions; up and right when there are none."""
+    """Return the middle of the widest angle between the given directions; up and right when there are
+    none."""
     if not ways:
         return turn(45)
     angles = sorted(math.degrees(cmath.phase(direction)) for direction in ways)

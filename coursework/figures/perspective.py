@@ -21,8 +21,8 @@ if TYPE_CHECKING:
 Place: TypeAlias = Sequence[float]  #: x, y and z, mm
 See: TypeAlias = Callable[[Place], complex]  #: where a point is seen; a mm across the line of sight is a mm
 
-#: Degrees from which the joints may be seen: about z from x, and above the plane of x and y. The first that shows
-#: them well is taken; in all x comes towards the reader, y goes to the right and z up.
+#: Degrees from which the joints may be seen: about z from x, and above the plane of x and y. The first that
+#: shows them well is taken; in all x comes towards the reader, y goes to the right and z up.
 _VIEWS = [(about, above) for above in (20, 30, 12, 40) for about in (30, 20, 40, 50, 60, -20, -30, -40)]
 _APART = 9.0  #: what is seen so far apart is told apart well, mm on paper
 _SCALE = 1.0  #: at most
@@ -206,9 +206,15 @@ def _tube(
     def rim(far: float) -> list[complex]:
         turns = [math.tau * k / 24 for k in range(24)]
         return [
-            see(_beyond(_beyond(_beyond(center, u, far), e1, radius * mm * math.cos(t)), e2, radius * mm * math.sin(t)))
+            see(
+                _beyond(
+                    _beyond(_beyond(center, u, far), e1, radius * mm * math.cos(t)),
+                    e2,
+                    radius * mm * math.sin(t),
+                )
+            )
             for t in turns
-        ]  # fmt: skip
+        ]
 
     front = long * mm if _dot(u, forward) >= 0 else -long * mm
     return [_face(_hull(rim(front) + rim(-front))), _face(tuple(rim(front)))]

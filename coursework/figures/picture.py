@@ -29,11 +29,44 @@ _DOCTYPE = re.compile(rb"<!DOCTYPE[^>\[]*>", re.I)
 #: All that draws. What else there is runs, moves, leads elsewhere, or is HTML as soon as it stands in a page.
 _DRAWS = frozenset(
     (
-        "svg", "g", "defs", "symbol", "use", "switch", "title", "desc", "metadata", "style", "path", "rect", "circle", "ellipse", "line",
-        "polyline", "polygon", "text", "tspan", "textPath", "image", "a", "marker", "pattern", "clipPath", "mask", "linearGradient",
-        "radialGradient", "stop", "filter", "view", "flowRoot", "flowRegion", "flowPara", "flowSpan", "solidColor",
+        "svg",
+        "g",
+        "defs",
+        "symbol",
+        "use",
+        "switch",
+        "title",
+        "desc",
+        "metadata",
+        "style",
+        "path",
+        "rect",
+        "circle",
+        "ellipse",
+        "line",
+        "polyline",
+        "polygon",
+        "text",
+        "tspan",
+        "textPath",
+        "image",
+        "a",
+        "marker",
+        "pattern",
+        "clipPath",
+        "mask",
+        "linearGradient",
+        "radialGradient",
+        "stop",
+        "filter",
+        "view",
+        "flowRoot",
+        "flowRegion",
+        "flowPara",
+        "flowSpan",
+        "solidColor",
     )
-)  # fmt: skip
+)
 _FETCHES = re.compile(
     r"url\s*\(\s*['\"]?(?!['\"]?\s*(?:#|data:image/))|@import|image-set|\bsrc\s*\(|\\", re.I
 )  #: a backslash writes any letter otherwise
@@ -89,7 +122,8 @@ class Picture(Printed):
 
     @cached_property
     def _drawn(self) -> tuple[str, float, float]:
-        """SVG of the drawing with a placeholder for its size, its natural width in mm, and height over width."""
+        """SVG of the drawing with a placeholder for its size, its natural width in mm, and height over
+        width."""
         data = self.source
         if not isinstance(data, bytes):
             raise BadCourse(f"the picture {data} has not been read yet")

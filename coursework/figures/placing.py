@@ -140,8 +140,9 @@ def _support(half: complex, direction: complex) -> float:
     return half.real * abs(direction.real) + half.imag * abs(direction.imag)
 
 
-#: A line with its half-width, mm: the left, low, right and high sides of the least box round it, its middle (across
-#: and up), and from there to its end. A plain tuple, since labels are tried against lines by the thousand.
+#: A line with its half-width, mm: the left, low, right and high sides of the least box round it, its middle
+#: (across and up), and from there to its end. A plain tuple, since labels are tried against lines by the
+#: thousand.
 Line = tuple[float, float, float, float, float, float, float, float, float]
 
 #: Lines drawn together, after the sides of the least box round them all: most things are off at once.
@@ -158,9 +159,16 @@ def _line(a: complex, b: complex, half: float) -> Line:
     left, right = (ax, bx) if ax < bx else (bx, ax)
     low, high = (ay, by) if ay < by else (by, ay)
     return (
-        left - half, low - half, right + half, high + half,
-        (ax + bx) / 2, (ay + by) / 2, (bx - ax) / 2, (by - ay) / 2, half,
-    )  # fmt: skip
+        left - half,
+        low - half,
+        right + half,
+        high + half,
+        (ax + bx) / 2,
+        (ay + by) / 2,
+        (bx - ax) / 2,
+        (by - ay) / 2,
+        half,
+    )
 
 
 def _meets(line: Line, across: float, up: float, wide: float, tall: float) -> bool:
@@ -256,8 +264,8 @@ class Obstacles:
     def white(self, center: complex, half: complex, direction: complex, inside: bool = False) -> float:
         """Return the white space round a box: the preferred one, or the least one allowed.
 
-        Where there is less, return minus the distance to go in direction ``direction``, at least, until there may
-        be more.
+        Where there is less, return minus the distance to go in direction ``direction``, at least, until there
+        may be more.
         """
         cx, cy, wide, tall = center.real, center.imag, half.real, half.imag
         x, y = wide + _CLEAR, tall + _CLEAR
@@ -456,7 +464,8 @@ def _choose(wish: LabelRequest, obstacles: Obstacles, rivals: _Rivals) -> Label:
                     results[mistaken] = Label(wish.label, text, center, width, height, leader)
                 if not mistaken:
                     break
-                # Farther on it is no better: a leader crosses the same line, and without one it leaves its own first.
+                # Farther on it is no better: a leader crosses the same line, and without one it leaves its
+                # own first.
                 if mistaken >= 2:
                     beyond[position.ray] = _LEADER - wish.start if leader is None else math.inf
         if results:

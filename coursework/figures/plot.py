@@ -186,7 +186,8 @@ class Plot:
         out.append(f'<path d="{"".join(grid)}" fill="none" stroke="{GRID}" stroke-width="0.2"/>')
         if low < 0 < high:
             out.append(
-                f'<path d="M{number(_LEFT)} {number(y(0))}h{number(self.width)}" stroke="#000" stroke-width="0.25"/>'
+                f'<path d="M{number(_LEFT)} {number(y(0))}h{number(self.width)}" stroke="#000" '
+                'stroke-width="0.25"/>'
             )
         out += [self._number(t, complex(_LEFT - 1.6, y(t) + 1.0), "end") for t in ticks]
         if self.at is not None:
@@ -238,11 +239,16 @@ def page(size: tuple[float, float], body: Sequence[str], title: str = "") -> str
         put(written(line), complex(size[0] / 2, _LINE * (k + 0.8)), "middle") for k, line in enumerate(lines)
     ]
     width, height = number(size[0]), number(size[1] + above)
-    return "\n".join([
-        f'<svg xmlns="http://www.w3.org/2000/svg" width="{width}mm" height="{height}mm" '
-        f'viewBox="0 0 {width} {height}" role="img">',
-        f'<rect width="{width}" height="{height}" fill="#fff"/>', *titles, *body, "</svg>\n",
-    ])  # fmt: skip
+    return "\n".join(
+        [
+            f'<svg xmlns="http://www.w3.org/2000/svg" width="{width}mm" height="{height}mm" '
+            f'viewBox="0 0 {width} {height}" role="img">',
+            f'<rect width="{width}" height="{height}" fill="#fff"/>',
+            *titles,
+            *body,
+            "</svg>\n",
+        ]
+    )
 
 
 def _title_lines(title: str, room: float) -> list[str]:
@@ -274,7 +280,10 @@ def _dot(x: float, y: float, right: bool | None) -> str:
             'stroke-width="0.6" stroke-linecap="round"/>'
         )
     fill = RIGHT if right else "#fff"
-    return f'<circle cx="{number(x)}" cy="{number(y)}" r="1.3" fill="{fill}" stroke="{RIGHT if right else LINE}" stroke-width="0.4"/>'
+    return (
+        f'<circle cx="{number(x)}" cy="{number(y)}" r="1.3" fill="{fill}" '
+        f'stroke="{RIGHT if right else LINE}" stroke-width="0.4"/>'
+    )
 
 
 def put(text: LabelText, at: complex, anchor: str, size: float = 1.0) -> str:
@@ -330,7 +339,8 @@ def _axis_ticks(axis: Axis, low: float, high: float, count: int) -> list[float]:
 
 
 def _runs(x: np.ndarray, y: np.ndarray, turns: bool) -> list[list[tuple[float, float]]]:
-    """Return the curve in pieces, cut where there is no value and where a direction passes from 180 to -180."""
+    """Return the curve in pieces, cut where there is no value and where a direction passes from 180 to
+    -180."""
     runs: list[list[tuple[float, float]]] = []
     before = math.nan
     for a, b in zip(x.tolist(), y.tolist(), strict=True):

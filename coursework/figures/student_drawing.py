@@ -16,10 +16,11 @@ The text is JSON of at most 20 kB::
      "scale": 5,
      "view": [-9, -6, 172]}
 
-Lengths are mm on paper, ``x`` to the right and ``y`` upwards; angles (``a``) are degrees from the x axis, anticlockwise. ``id``
-is a positive whole number, each once. ``n``, where present, is the part that asks for the point or the vector, or the name of a
-body. A line passes through its point and has no ends. A ``joint`` connects two bodies or more and states its kind in ``t``, a word
-or nothing. ``scale`` is the chosen scale, or null; ``view`` is the left, lower corner and the width of what was seen.
+Lengths are mm on paper, ``x`` to the right and ``y`` upwards; angles (``a``) are degrees from the x axis,
+anticlockwise. ``id`` is a positive whole number, each once. ``n``, where present, is the part that asks for
+the point or the vector, or the name of a body. A line passes through its point and has no ends. A ``joint``
+connects two bodies or more and states its kind in ``t``, a word or nothing. ``scale`` is the chosen scale, or
+null; ``view`` is the left, lower corner and the width of what was seen.
 
 The text comes from a browser and may be anything: whatever departs from this is refused.
 """
@@ -47,8 +48,13 @@ _FARTHEST = 1e5  #: mm
 _NAME = re.compile(r"[^\W]{1,60}")
 _EDGE_MM = 10.0  #: by which lines go beyond the points
 _NUMBERS: Mapping[str, tuple[str, ...]] = {
-    "point": ("x", "y"), "line": ("x", "y", "a"), "circle": ("x", "y", "r"), "vector": (), "body": ("x", "y"), "joint": (),
-}  # fmt: skip
+    "point": ("x", "y"),
+    "line": ("x", "y", "a"),
+    "circle": ("x", "y", "r"),
+    "vector": (),
+    "body": ("x", "y"),
+    "joint": (),
+}
 _ENDS = {"vector": "point", "joint": "body"}  #: kind of the items to which an item refers
 
 

@@ -34,22 +34,51 @@ DROP, RAISE = -0.20, 0.36  #: shift of a subscript and of a superscript, em of t
 _SLACK = 1.06  #: a reader's machine may draw the text in another serif, a little wider
 
 _ACCENTS = {
-    "dot": "dot", "ddot": "ddot", "vec": "arrow", "overrightarrow": "arrow", "bar": "bar", "overline": "bar",
-}  # fmt: skip
+    "dot": "dot",
+    "ddot": "ddot",
+    "vec": "arrow",
+    "overrightarrow": "arrow",
+    "bar": "bar",
+    "overline": "bar",
+}
 _VECTOR = re.compile("([^\\W_])\N{COMBINING RIGHT ARROW ABOVE}")
 _DRAWN = str.maketrans("ϵϕ⋅∘∗", "εφ·°*")  #: letters and signs as figures have them
 
 # Advance widths of the embedded serif, upright and italic, hundredths of an em.
 _UPRIGHT_WIDTHS = {
-    19: "'|", 22: ",.", 25: "ijlI-:;·′  !", 29: "°", 32: "tJ()/[]f", 38: "rs*", 42: "cz",
-    46: "aeégèêàç0123456789?ôk", 50: "bdovxhnpquùSPFyLε", 55: "+−=<>±×EBYαβζδηθκλμξτ", 60: "TRZXρσφπνω",
-    66: "CKUV&%", 71: "ADGHNOQΩΘ", 79: "mw∞œ", 95: "WM",
-}  # fmt: skip
+    19: "'|",
+    22: ",.",
+    25: "ijlI-:;·′  !",
+    29: "°",
+    32: "tJ()/[]f",
+    38: "rs*",
+    42: "cz",
+    46: "aeégèêàç0123456789?ôk",
+    50: "bdovxhnpquùSPFyLε",
+    55: "+−=<>±×EBYαβζδηθκλμξτ",
+    60: "TRZXρσφπνω",
+    66: "CKUV&%",
+    71: "ADGHNOQΩΘ",
+    79: "mw∞œ",
+    95: "WM",
+}
 _ITALIC_WIDTHS = {
-    19: "|", 23: ",.:;!", 27: "′° ·iîjlι", 32: "ftI()/[]", 37: "rsεξ", 41: "cesτéèêJz",
-    45: "0123456789SoôFγδθζμν", 49: "abdghkpqxvyαàκβλρηπσχ", 53: "EnuLTPhù+−=<>±×Γ", 58: "BRYZψφΣ",
-    62: "CUXΛΔ", 67: "ADGHKNOQVΘωΞΦ", 70: "wΠΨΩ", 79: "mMœ∞", 92: "W",
-}  # fmt: skip
+    19: "|",
+    23: ",.:;!",
+    27: "′° ·iîjlι",
+    32: "ftI()/[]",
+    37: "rsεξ",
+    41: "cesτéèêJz",
+    45: "0123456789SoôFγδθζμν",
+    49: "abdghkpqxvyαàκβλρηπσχ",
+    53: "EnuLTPhù+−=<>±×Γ",
+    58: "BRYZψφΣ",
+    62: "CUXΛΔ",
+    67: "ADGHKNOQVΘωΞΦ",
+    70: "wΠΨΩ",
+    79: "mMœ∞",
+    92: "W",
+}
 
 
 def _by_letter(table: dict[int, str]) -> dict[str, float]:

@@ -13,7 +13,8 @@ from coursework.figures.text import SIZE, LabelAccent, LabelText, LetterRun, adv
 
 _FALLBACK = f"{FONT}, Linux Libertine O, Times New Roman, serif"
 
-#: What writes the letters of a text, given the middle of its baseline, mm, y down; accents are drawn in any case.
+#: What writes the letters of a text, given the middle of its baseline, mm, y down; accents are drawn in any
+#: case.
 Lettering: TypeAlias = Callable[[LabelText, complex], str]
 
 
@@ -63,14 +64,20 @@ def written(
     width, height = map(number, size)
     font = f' font-family="{_FALLBACK}" font-size="{number(SIZE)}" text-anchor="middle"'
     style = font if lettering is as_text else ""
-    return "\n".join([
-        f'<svg xmlns="http://www.w3.org/2000/svg" width="{width}mm" height="{height}mm" '
-        f'viewBox="0 0 {width} {height}">',
-        f'<rect width="{width}" height="{height}" fill="#fff"/>',
-        f'<g fill="none" stroke="{BLACK}" stroke-linecap="round" stroke-linejoin="round">', *lines, "</g>",
-        f'<g fill="{BLACK}" stroke="none"{style}>', *texts, "</g>",
-        "</svg>\n",
-    ])  # fmt: skip
+    return "\n".join(
+        [
+            f'<svg xmlns="http://www.w3.org/2000/svg" width="{width}mm" height="{height}mm" '
+            f'viewBox="0 0 {width} {height}">',
+            f'<rect width="{width}" height="{height}" fill="#fff"/>',
+            f'<g fill="none" stroke="{BLACK}" stroke-linecap="round" stroke-linejoin="round">',
+            *lines,
+            "</g>",
+            f'<g fill="{BLACK}" stroke="none"{style}>',
+            *texts,
+            "</g>",
+            "</svg>\n",
+        ]
+    )
 
 
 def left_out(text: LabelText, at: complex) -> str:

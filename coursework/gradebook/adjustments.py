@@ -1,7 +1,7 @@
 """Adjustments after an exam: what a question counts, what answers and errors earn, and the scale of the mark.
 
-Each is a decision on no single student, a line that lasts; the last on a place counts. They change marked sheets, never
-answers or readings, so that taking one back gives the marks of before.
+Each is a decision on no single student, a line that lasts; the last on a place counts. They change marked
+sheets, never answers or readings, so that taking one back gives the marks of before.
 """
 
 from __future__ import annotations
@@ -41,8 +41,8 @@ WIDEST = 100.0  #: accepted half-widths
 #: Verdicts that a wider margin leaves as they are.
 _SETTLED = ("correct", "accepted", "missing", "unreadable", "to_mark")
 
-#: Sheets, and the digits that a student keeps unless they are those of the papers, to the distances of the answers from the
-#: references in accepted half-widths, by part.
+#: Sheets, and the digits that a student keeps unless they are those of the papers, to the distances of the
+#: answers from the references in accepted half-widths, by part.
 Margins = Callable[[Sequence[Graded], int | None], Iterable[Mapping[str, float]]]
 
 
@@ -89,7 +89,8 @@ class Adjustments:
 
     @cached_property
     def digits(self) -> int | None:
-        """Digits that a student may keep, where margins are as wide as that costs; None where they are as issued."""
+        """Digits that a student may keep, where margins are as wide as that costs; None where they are as
+        issued."""
         last = self._last.get((DIGITS, "", "", ""))
         return None if last is None or last.points is None else int(last.points)
 
@@ -309,7 +310,8 @@ def curve_of(text: str) -> tuple[CurvePoint, ...]:
 
 
 def check_adjustment(decision: Decision, worth: Mapping[str, Mapping[str, float]]) -> None:
-    """Refuse an adjustment that makes no sense; ``worth`` are the points of the issued parts, by exercise and part.
+    """Refuse an adjustment that makes no sense; ``worth`` are the points of the issued parts, by exercise and
+    part.
 
     Raises
     ------

@@ -206,7 +206,8 @@ class Exam:
         return self._results(self.adjusted, self.decisions.adjustments)
 
     def distribution(self, decisions: Decisions | None = None) -> Distribution:
-        """Return the marks of those who handed something in or were present, by the scale with these decisions."""
+        """Return the marks of those who handed something in or were present, by the scale with these
+        decisions."""
         adjustments = (decisions or self.decisions).adjustments
         stated = (adjustments.on(self.issued).assignment or {}).get("mark")
         scale = stated or {**USUAL_SCALE, "step": 0.01}
@@ -242,7 +243,8 @@ class Exam:
 
     @property
     def missing(self) -> tuple[int, int]:
-        """Number of students who are absent, and excused, where somebody stated it, and who handed nothing in."""
+        """Number of students who are absent, and excused, where somebody stated it, and who handed nothing
+        in."""
         handed_in = {graded.student for graded in self.machine}
         counts = Counter(its for student, its in self.presence.items() if student not in handed_in)
         return counts[ABSENT], counts[EXCUSED]
@@ -266,7 +268,8 @@ class Exam:
         return self._numbers_on_papers[exercise, part]
 
     def label(self, exercise: str, part: str) -> str:
-        """Return the number of a question, with its part where other papers ask another question of this number."""
+        """Return the number of a question, with its part where other papers ask another question of this
+        number."""
         number = self.number(exercise, part)
         is_shared = [*self._numbers_on_papers.values()].count(number) > 1
         return f"{number} {part}" if is_shared else number
@@ -289,8 +292,9 @@ class Exam:
         return kinds
 
     def called(self, name: str, lang: str = "en") -> list[Question]:
-        """Return the questions of a name: a number on the papers, such as ``2.3``, which may be that of different questions, or
-        ``exercise/part``; an exercise, by its number or its name; or a kind of part, such as ``angle``, as itself or in words.
+        """Return the questions of a name: a number on the papers, such as ``2.3``, which may be that of
+        different questions, or ``exercise/part``; an exercise, by its number or its name; or a kind of part,
+        such as ``angle``, as itself or in words.
 
         Raises
         ------
@@ -491,7 +495,8 @@ def _pattern(line: Mark) -> str:
 
 
 def is_non_answer(text: str, *, is_number: bool) -> bool:
-    """Return True for a text that says nothing: words such as "no time", and, where a number is asked, a text without one."""
+    """Return True for a text that says nothing: words such as "no time", and, where a number is asked, a text
+    without one."""
     plain = " ".join(text.split())
     if not any(c.isalnum() for c in plain) or says_nothing(plain):
         return True
@@ -528,8 +533,8 @@ def steps_on(
     *,
     lang: str = "en",
 ) -> list[Decision]:
-    """Return a change of what a place names (:meth:`Exam.called`), one batch whatever the number of its questions; without a
-    place of everything.
+    """Return a change of what a place names (:meth:`Exam.called`), one batch whatever the number of its
+    questions; without a place of everything.
 
     Raises
     ------
@@ -570,7 +575,8 @@ class Restated(NamedTuple):
 
 
 def restated(assignment: Assignment, exam: Exam) -> Restated:
-    """Return what an assignment's file states now and did not when it was issued, unless a step has applied it."""
+    """Return what an assignment's file states now and did not when it was issued, unless a step has applied
+    it."""
     adjustments, steps, notes = exam.decisions.adjustments, [], []
     stated = exam.issued.assignment or {}
     name = f"{assignment.name}.toml"
@@ -611,7 +617,8 @@ def restated(assignment: Assignment, exam: Exam) -> Restated:
     elif rules.digits > issued_rules.digits:
         notes.append(
             Message(
-                "{file} states digits = {now:g} in [marking], and the papers {before:g}, which stays: margins would become narrower, and what was right stays right",
+                "{file} states digits = {now:g} in [marking], and the papers {before:g}, which stays: "
+                "margins would become narrower, and what was right stays right",
                 file=name,
                 now=rules.digits,
                 before=issued_rules.digits,

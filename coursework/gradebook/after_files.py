@@ -1,4 +1,5 @@
-"""Marked exam in a folder of marks: its answers are those of ``marks.csv``, its decisions those of ``decisions.csv``."""
+"""Marked exam in a folder of marks: its answers are those of ``marks.csv``, its decisions those of
+``decisions.csv``."""
 
 from __future__ import annotations
 
@@ -68,10 +69,19 @@ class MarkedFolder:
         feedback: bool = False,
         progress: Progress = lambda done, of: None,
     ) -> Gradebook:
-        """Add decisions to ``decisions.csv``, and write the tables of marks with them; with ``feedback`` the feedback sheets."""
+        """Add decisions to ``decisions.csv``, and write the tables of marks with them; with ``feedback`` the
+        feedback sheets."""
         self.files.add(decisions)
         return write_marks(
-            self.course, self.issued, self._sheets, self._machine, self.folder, files=self.files,
-            decisions=self.files.decisions, feedback=feedback, spreadsheet=self._spreadsheet, progress=progress,
+            self.course,
+            self.issued,
+            self._sheets,
+            self._machine,
+            self.folder,
+            files=self.files,
+            decisions=self.files.decisions,
+            feedback=feedback,
+            spreadsheet=self._spreadsheet,
+            progress=progress,
             form=FeedbackForm(),
-        )  # fmt: skip
+        )

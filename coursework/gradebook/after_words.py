@@ -1,4 +1,5 @@
-"""Words of the evening after an exam: a step, a question and a distribution as lines in the reader's language."""
+"""Words of the evening after an exam: a step, a question and a distribution as lines in the reader's
+language."""
 
 from __future__ import annotations
 
@@ -22,7 +23,8 @@ def number(value: float, lang: str, digits: int = 4) -> str:
 
 
 def batch_texts(exam: Exam, steps: Iterable[Decision], lang: str) -> list[tuple[Decision, str]]:
-    """Return the first of the decisions that were made together, and what they do, batch by batch in their order."""
+    """Return the first of the decisions that were made together, and what they do, batch by batch in their
+    order."""
     batches: dict[str, list[Decision]] = {}
     for one in steps:
         batches.setdefault(one.id, []).append(one)
@@ -30,7 +32,8 @@ def batch_texts(exam: Exam, steps: Iterable[Decision], lang: str) -> list[tuple[
 
 
 def batch_text(exam: Exam, made: Sequence[Decision], lang: str) -> str:
-    """Return what the decisions of one batch do: those that do the same to several questions are told together."""
+    """Return what the decisions of one batch do: those that do the same to several questions are told
+    together."""
     texts = words(lang)["after"]
     if all(one.student for one in made):
         return str(texts["aside"]).format(len(made))

@@ -16,7 +16,8 @@ from coursework.system.writing import write_whole
 
 
 def lift(issued: Path, waiting: Callable[[], int], today: datetime.date | None = None) -> None:
-    """Write the day into ``issued.json``, from which on names take the place of codes; nothing if they do already.
+    """Write the day into ``issued.json``, from which on names take the place of codes; nothing if they do
+    already.
 
     ``waiting`` marks, and returns the number of answers that wait for a person.
 

@@ -29,8 +29,8 @@ def marks_of_student(
 ) -> OwnMarks:
     """Return the marks of a student whom the platform identifies, whatever name the answers contain.
 
-    The variant is the one that was issued to the student: answers that say they are of another are rejected. A stranger to
-    the roster has the sheets of nothing.
+    The variant is the one that was issued to the student: answers that say they are of another are rejected.
+    A stranger to the roster has the sheets of nothing.
 
     Raises
     ------

@@ -64,7 +64,8 @@ def read_answers(
             label, answer = labels[k], cells[k].strip()
             where = f"{location}, {header[k].partition(':')[0].strip()}"
             if not answer:
-                continue  # a question that a group did not draw for this student is as blank as one that waits
+                # A question that a group did not draw for this student is as blank as one that waits.
+                continue
             if label is None:
                 yield Rejected(where, NO_LABEL, {"student": student, "answer": answer})
             elif not label.part:

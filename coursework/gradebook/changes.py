@@ -17,16 +17,27 @@ from coursework.system.limits import check_size
 from coursework.system.tables import as_written, delimiter_of, duplicate_column, open_csv
 
 CHANGES_COLUMNS = (
-    "date", "student", "exercise", "seed", "part", "answer",
-    "verdict_before", "verdict_now", "points_before", "points_now", "mark_before", "mark_now",
-)  # fmt: skip
+    "date",
+    "student",
+    "exercise",
+    "seed",
+    "part",
+    "answer",
+    "verdict_before",
+    "verdict_now",
+    "points_before",
+    "points_now",
+    "mark_before",
+    "mark_now",
+)
 _PLACE = ("student", "exercise", "seed", "part")
 _TURN = ("verdict_before", "verdict_now", "points_before", "points_now")
 _USUAL_MARK = 20  #: maximum of a mark if no assignment states one
 
 
 def _number(text: str) -> float:
-    """Return the points in a cell of a file that anybody may have edited, 0 in an empty one; NaN if there are none."""
+    """Return the points in a cell of a file that anybody may have edited, 0 in an empty one; NaN if there are
+    none."""
     return typed_number(text or "0")
 
 
@@ -100,8 +111,8 @@ class EarlierMarks:
 class History:
     """Changes of earlier markings of a folder, to which the new ones are added.
 
-    Each has its day, and the student's mark of the summary before and now, out of 20 where no assignment states a scale. Of
-    marks with adjustments those are listed too that changed without an answer.
+    Each has its day, and the student's mark of the summary before and now, out of 20 where no assignment
+    states a scale. Of marks with adjustments those are listed too that changed without an answer.
     """
 
     def __init__(

@@ -174,8 +174,8 @@ def _marked_chunks(
 
 @cache
 def _known(root: str) -> dict[str, Variant]:
-    """Return the variants of a course that this process knows, where it marks for another: a worker of a cluster serves
-    several courses, and a corrected one has the same records."""
+    """Return the variants of a course that this process knows, where it marks for another: a worker of a
+    cluster serves several courses, and a corrected one has the same records."""
     return {}
 
 
@@ -186,8 +186,8 @@ def _mark_elsewhere(root: str, chunk: list[_SheetJob], rules: Rules | None) -> l
 def _mark_chunk(
     course: Course, chunk: Sequence[_SheetJob], rules: Rules | None, known: dict[str, Variant]
 ) -> list[list[tuple] | str]:
-    """Return the lines of each sheet, or the reason for which it cannot be marked. Variants that are ``known`` from
-    the chunks before keep the keys that were computed for them."""
+    """Return the lines of each sheet, or the reason for which it cannot be marked. Variants that are
+    ``known`` from the chunks before keep the keys that were computed for them."""
     # Sheets of one variant share its record.
     names = {id(job.record): f"{job.record} {rules}" for job in chunk}
     variants = {name: known[name] for name in names.values() if name in known}
@@ -211,8 +211,9 @@ def _mark_chunk(
 
 
 def _mark_sheet(variant: Variant, answers: Mapping[str, Any], right: Mapping[str, str]) -> list[tuple] | str:
-    """Return the marks of a sheet in the order of its parts, or the reason for which it cannot be marked. Answers
-    known to be ``right`` are not marked again. The marks are plain tuples, which pass between processes at half the price."""
+    """Return the marks of a sheet in the order of its parts, or the reason for which it cannot be marked.
+    Answers known to be ``right`` are not marked again. The marks are plain tuples, which pass between
+    processes at half the price."""
     try:
         marking = mark(variant, answers, right) if len(right) < len(variant.parts) else {}
         return [

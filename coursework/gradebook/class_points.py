@@ -67,7 +67,8 @@ def class_points(marks: Path, score: str) -> list[Scored]:
         raise BadInput("no {file}: name the folder of marks that 'coursework grade' wrote", file=path)
     if codes_shown(issued_near(path) or {}):
         raise BadInput(
-            "{file}: students go by codes; 'coursework grade … --names' puts names in place of them once nothing waits",
+            "{file}: students go by codes; 'coursework grade … --names' puts names in place of them "
+            "once nothing waits",
             file=path,
         )
     scored = list(_scored(path, score))

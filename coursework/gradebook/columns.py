@@ -8,13 +8,32 @@ from coursework.issuing.issued import Issued
 from coursework.issuing.students import folded
 
 MARKS_COLUMNS = (
-    "student", "exercise", "seed", "part", "answer", "read_as", "verdict", "points", "out_of", "feedback",
-)  # fmt: skip
+    "student",
+    "exercise",
+    "seed",
+    "part",
+    "answer",
+    "read_as",
+    "verdict",
+    "points",
+    "out_of",
+    "feedback",
+)
 #: Kinds of verdict, in the order of the summary's columns.
 VERDICTS = (
-    "correct", "follow_through", "mistake", "slip", "accepted", "partial", "wrong", "wrong_unit", "missing_unit",
-    "unreadable", "to_mark", "missing",
-)  # fmt: skip
+    "correct",
+    "follow_through",
+    "mistake",
+    "slip",
+    "accepted",
+    "partial",
+    "wrong",
+    "wrong_unit",
+    "missing_unit",
+    "unreadable",
+    "to_mark",
+    "missing",
+)
 SUMMARY_COLUMNS = ("student", "points", "out_of", "percent", *VERDICTS)
 SITTING = "sitting"  #: a column of the marks and of the summary where somebody has several
 SUBMITTED = "submitted"  #: a column of the marks where a platform tells it
@@ -37,8 +56,8 @@ def summary_columns(
 ) -> tuple[str, ...]:
     """Return the columns of ``summary.csv``: the usual ones with the identity, the exercises and the mark of
     an assignment among them, then those of the roster. With ``late``, a column for the penalty of late
-    submissions; percent and mark are then those of the remaining points. With ``provisional``, one for the answers that
-    wait for a person; with ``presence``, one for the presence."""
+    submissions; percent and mark are then those of the remaining points. With ``provisional``, one for the
+    answers that wait for a person; with ``presence``, one for the presence."""
     sitting = (SITTING,) if issued.has_sittings else ()
     student, points, out_of, *others = SUMMARY_COLUMNS
     others = [LATE, *others] if late else others
@@ -69,8 +88,8 @@ def exercise_columns(issued: Issued) -> dict[str, str]:
 
 
 def carried_columns(issued: Issued) -> dict[str, str]:
-    """Return the columns of the roster that the summary repeats: folded title -> name in the summary. Columns of birth,
-    health and extra time are among them only where the assignment or the command names them."""
+    """Return the columns of the roster that the summary repeats: folded title -> name in the summary. Columns
+    of birth, health and extra time are among them only where the assignment or the command names them."""
     titles = {folded(title): title for cells in issued.columns.values() for title in cells}
     return {
         f: _distinct_title(title, _reserved_names(issued))

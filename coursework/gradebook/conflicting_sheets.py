@@ -35,7 +35,8 @@ def file_of(row: AnswerRow) -> str:
 
 
 class Doubts:
-    """Rows of sheets in several files, and why those wait whose answers differ: known when all rows have been noted."""
+    """Rows of sheets in several files, and why those wait whose answers differ: known when all rows have been
+    noted."""
 
     def __init__(self, issued: Issued) -> None:
         self._issued = issued
@@ -86,7 +87,8 @@ def _reasons_to_wait(issued: Issued, sheet: Sheet, files: Sequence[str]) -> dict
             listed = Message("{files} and {count} more", files=listed, count=len(files) - 2)
         why = Message(
             (
-                "{files} are different sheets of {student}: a person must decide which one counts; remove the other, "
+                "{files} are different sheets of {student}: a person must decide which one counts; "
+                "remove the other, "
                 "or name the file after its student"
             ),
             files=listed,

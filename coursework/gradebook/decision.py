@@ -100,8 +100,8 @@ def new_id() -> str:
 
 
 def with_ids(decisions: Iterable[Decision]) -> list[Decision]:
-    """Return decisions of which every step has an id: one that was written without has one of its content, the same wherever
-    it is read."""
+    """Return decisions of which every step has an id: one that was written without has one of its content,
+    the same wherever it is read."""
     met: Counter[tuple[str, ...]] = Counter()
     named = []
     for one in decisions:
@@ -115,8 +115,8 @@ def with_ids(decisions: Iterable[Decision]) -> list[Decision]:
 
 
 def in_force(decisions: Iterable[Decision]) -> list[Decision]:
-    """Return the decisions on one answer that are not taken back, in their order: a withdrawal is of what it names, and else of
-    all before it."""
+    """Return the decisions on one answer that are not taken back, in their order: a withdrawal is of what it
+    names, and else of all before it."""
     standing: list[Decision] = []
     for one in decisions:
         if one.kind != WITHDRAWN:

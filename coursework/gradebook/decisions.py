@@ -1,7 +1,9 @@
-"""Decisions of people on answers: accepted, given points, mark kept, or withdrawn; the last on an answer counts.
+"""Decisions of people on answers: accepted, given points, mark kept, or withdrawn; the last on an answer
+counts.
 
-A folder of marks has them in ``decisions.csv``, in which a marking also lists the answers that a person marks; a database
-has them in a table. ``accepted.csv``, ``to_mark.csv`` and ``by_hand.csv`` of folders of before are still read.
+A folder of marks has them in ``decisions.csv``, in which a marking also lists the answers that a person
+marks; a database has them in a table. ``accepted.csv``, ``to_mark.csv`` and ``by_hand.csv`` of folders of
+before are still read.
 """
 
 from __future__ import annotations
@@ -42,8 +44,16 @@ from coursework.system.limits import MOST_TABLE_BYTES
 
 DECISIONS_FILE = "decisions.csv"
 DECISION_COLUMNS = (
-    "student", "exercise", "seed", "part", "answer", "kind", "points", "out_of", "reason",
-)  # fmt: skip
+    "student",
+    "exercise",
+    "seed",
+    "part",
+    "answer",
+    "kind",
+    "points",
+    "out_of",
+    "reason",
+)
 STEP_COLUMNS = ("by", "date", "id", "withdraws")  #: more columns where a line is a step, or has an id
 TO_MARK_FILE, ACCEPTED_FILE, EDITED_FILE = "to_mark.csv", "accepted.csv", "by_hand.csv"  #: of before
 _FILES = (DECISIONS_FILE, TO_MARK_FILE, ACCEPTED_FILE, EDITED_FILE)
@@ -55,8 +65,8 @@ _ALIKE = 0.75  #: of two column names, beyond which one is the other with a typi
 
 
 class Decisions:
-    """Decisions in their order, and what they make of marked sheets: those on an answer of a student, those on an answer
-    whoever gave it, and adjustments of questions and of the scale."""
+    """Decisions in their order, and what they make of marked sheets: those on an answer of a student, those
+    on an answer whoever gave it, and adjustments of questions and of the scale."""
 
     def __init__(self, decisions: Iterable[Decision] = ()):
         self._of: dict[tuple[str, str, str], list[Decision]] = {}
@@ -73,7 +83,8 @@ class Decisions:
 
     @cached_property
     def standing_steps(self) -> tuple[Decision, ...]:
-        """Steps that are not taken back: a withdrawal takes back what it names, or the last one on the same place."""
+        """Steps that are not taken back: a withdrawal takes back what it names, or the last one on the same
+        place."""
         standing: list[Decision] = []
         named = {step.id for step in self.steps}
         for step in self.steps:
@@ -87,8 +98,8 @@ class Decisions:
         return tuple(standing)
 
     def put_aside(self, reasons: Iterable[str]) -> list[Decision]:
-        """Return the standing decisions that give no points to answers of students, for one of these reasons or several of them
-        in one batch."""
+        """Return the standing decisions that give no points to answers of students, for one of these reasons
+        or several of them in one batch."""
         given = [one for one in self._own_in_force if one.kind == GIVEN and not one.points]
         wanted, batches = {*reasons}, Counter(one.id for one in given if one.id)
         return [one for one in given if one.reason in wanted or batches[one.id] > 1]
@@ -98,8 +109,8 @@ class Decisions:
         return [one for decisions in self._of.values() for one in in_force(decisions)]
 
     def called(self, name: str) -> list[Decision]:
-        """Return the standing decisions of an id, or of the only one that begins so by three letters at least; those of one
-        batch together.
+        """Return the standing decisions of an id, or of the only one that begins so by three letters at
+        least; those of one batch together.
 
         Raises
         ------
@@ -194,7 +205,8 @@ class Decisions:
 
 class DecisionFiles:
     """Files in which people write decisions: those of a folder of marks, and a file of accepted answers, by
-    default ``accepted.csv`` of the folder; ``renamed`` returns the name under which the record shows a student.
+    default ``accepted.csv`` of the folder; ``renamed`` returns the name under which the record shows a
+    student.
 
     Raises
     ------
@@ -226,8 +238,8 @@ class DecisionFiles:
 
     @property
     def lines(self) -> Iterator[Decision]:
-        """Decisions of all files, in the order in which they count: the steps of ``decisions.csv`` last, since it also states
-        what is taken back of the others."""
+        """Decisions of all files, in the order in which they count: the steps of ``decisions.csv`` last,
+        since it also states what is taken back of the others."""
         for decisions in reversed(self.files.values()):
             yield from (one for one in decisions if not one.student and one.kind != EDITED)
         for decisions in self.files.values():
@@ -304,8 +316,8 @@ class DecisionFiles:
         ]
 
     def rows(self) -> list[dict[str, Any]]:
-        """Return the lines of the new ``decisions.csv``: question by question the answers that a person marks,
-        those without points first; then the other decisions as they were."""
+        """Return the lines of the new ``decisions.csv``: question by question the answers that a person
+        marks, those without points first; then the other decisions as they were."""
         self._rows.sort(key=lambda row: (row["points"] != "", row["exercise"], row["part"]))
         return [*self._rows, *self.others({*self._listed, *self._unused})]
 
@@ -439,7 +451,8 @@ def _decision(
         )
     if any(cell.strip() for cell in more):
         raise BadInput(
-            "{place}: {cells} more than there are headings, {found!r}; put a text with a comma, or a number with one, between quotation marks",
+            "{place}: {cells} more than there are headings, {found!r}; put a text with a comma, or a "
+            "number with one, between quotation marks",
             place=location,
             cells=counted(len(more), "cell"),
             found=", ".join(more)[:40],
@@ -538,7 +551,8 @@ def _contradictions(decisions: Sequence[Decision], issued_parts: _IssuedParts) -
             if issued_parts.points(before) != issued_parts.points(decision):
                 yield Message(
                     (
-                        "{place}: {gives} for {answer}, but {before} in line {line}; line {last} counts: delete one of them"
+                        "{place}: {gives} for {answer}, but {before} in line {line}; line {last} "
+                        "counts: delete one of them"
                     ),
                     place=decision.location,
                     gives=decision.gives,

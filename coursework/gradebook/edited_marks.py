@@ -1,7 +1,7 @@
 """Marks of ``marks.csv``, possibly edited by hand: read again, so that summary and feedback agree with them.
 
-The answers are marked once more for what is said of them and for what the hand changed; verdict and points are those
-of the file.
+The answers are marked once more for what is said of them and for what the hand changed; verdict and points
+are those of the file.
 """
 
 from __future__ import annotations

@@ -103,8 +103,8 @@ _LISTING = ("wrong", "wrong_place", "wrong_count")
 def _is_looked_for(part: Part, verdict: str) -> bool:
     """Return whether it helps to hear from what a quantity follows.
 
-    Not where the message lists it, as it does for a wrong number; not where only the form of the answer is wrong, nor for
-    what is drawn or chosen freely and judged with other answers.
+    Not where the message lists it, as it does for a wrong number; not where only the form of the answer is
+    wrong, nor for what is drawn or chosen freely and judged with other answers.
     """
     if part.sort.is_open or part.judge or verdict in _NOT_ABOUT_IT:
         return False

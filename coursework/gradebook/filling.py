@@ -55,7 +55,8 @@ def fill(
     Raises
     ------
     BadInput
-        The file is none of the platform's, has no such column or several, or somebody has more than the maximum.
+        The file is none of the platform's, has no such column or several, or somebody has more than the
+        maximum.
     """
     try:
         table = CellTable(_bytes_of(template))
@@ -120,7 +121,8 @@ def _sheet(platform: PlatformGradebook, table: CellTable, item: str, source: Pat
         titles_text = ", ".join(title.strip() for title in titles if title.strip())[:200] or "nothing"
         raise BadInput(
             (
-                "{file} names nobody: a gradebook of {platform} has columns for names or e-mail addresses; found "
+                "{file} names nobody: a gradebook of {platform} has columns for names or e-mail "
+                "addresses; found "
                 "{found}; download it from {menu}"
             ),
             file=source,
@@ -213,7 +215,8 @@ def _most(platform: PlatformGradebook, sheet: _Sheet, stated: float | None, sour
     if in_file is not None and stated is not None and in_file != stated:
         raise BadInput(
             (
-                "{file} states that {column} is out of {maximum:g}, and --out-of states {stated:g}: omit the option, "
+                "{file} states that {column} is out of {maximum:g}, and --out-of states {stated:g}: "
+                "omit the option, "
                 "or change the item"
             ),
             file=source,
@@ -229,7 +232,8 @@ def _check_alike(scored: Iterable[Scored], platform: PlatformGradebook, item: st
     if len(totals) > 1:
         raise BadInput(
             (
-                "the class has points out of {totals}, and the export of {platform} does not state the maximum of "
+                "the class has points out of {totals}, and the export of {platform} does not state the "
+                "maximum of "
                 "{item!r}: state it, --out-of 20"
             ),
             totals=joined_by_and(totals[:3]),
@@ -243,7 +247,8 @@ def _points(student: Scored, filled: Filled) -> str:
     limit = filled.most if filled.most is not None else float(student.out_of or "inf")
     if not 0 <= float(points) <= limit:
         raise BadInput(
-            "{name} has {points}, and {column} is out of {limit:g}: the platform would refuse the file, and nothing is written",
+            "{name} has {points}, and {column} is out of {limit:g}: the platform would refuse the "
+            "file, and nothing is written",
             name=student.name,
             points=points,
             column=filled.column,

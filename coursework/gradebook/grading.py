@@ -1,7 +1,7 @@
 """Grading of a class: from files of answers to marks, summary, rejected rows and feedback sheets.
 
-The tables appear together, whole, in place of those before, or not at all: none takes its place before all are written
-and each is seen to be replaceable.
+The tables appear together, whole, in place of those before, or not at all: none takes its place before all
+are written and each is seen to be replaceable.
 """
 
 from __future__ import annotations
@@ -63,18 +63,19 @@ def grade_files(
     form: FeedbackForm = USUAL,
     carry: Sequence[str] | None = None,
 ) -> Gradebook:
-    """Mark files and write ``marks.csv``, ``summary.csv``, ``rejected.csv`` and feedback sheets; ``decisions.csv`` where
-    answers are marked by a person, whose decisions in an earlier one count.
+    """Mark files and write ``marks.csv``, ``summary.csv``, ``rejected.csv`` and feedback sheets;
+    ``decisions.csv`` where answers are marked by a person, whose decisions in an earlier one count.
 
     If there are earlier marks, ``changes.csv`` lists the differences. ``accepted`` is a file of answers that
     a person accepts, besides ``decisions.csv`` in ``out``. ``feedback`` None prints sheets for a class of
-    usual size, with the options of ``form``. ``spreadsheet`` is the program for which the tables are written. ``carry`` names
-    columns of the roster that the summary repeats, instead of those of the assignment.
+    usual size, with the options of ``form``. ``spreadsheet`` is the program for which the tables are written.
+    ``carry`` names columns of the roster that the summary repeats, instead of those of the assignment.
 
     Raises
     ------
     BadInput
-        A file that is not there, or nothing that can be marked, or solutions before their day: then nothing is written.
+        A file that is not there, or nothing that can be marked, or solutions before their day: then nothing
+        is written.
     """
     issued = Issued.read(issued_path)
     issued.carry = issued.carry if carry is None else carry
@@ -91,9 +92,18 @@ def grade_files(
         feedback = usual_feedback(sheets) if feedback is None else feedback
         results = marked(course, issued, sheets)
         return write_marks(
-            course, issued, sheets, results, out, files=files, decisions=files.decisions, feedback=feedback,
-            spreadsheet=spreadsheet, progress=progress, form=form,
-        )  # fmt: skip
+            course,
+            issued,
+            sheets,
+            results,
+            out,
+            files=files,
+            decisions=files.decisions,
+            feedback=feedback,
+            spreadsheet=spreadsheet,
+            progress=progress,
+            form=form,
+        )
 
 
 def usual_feedback(sheets: Sheets) -> bool:
@@ -103,7 +113,8 @@ def usual_feedback(sheets: Sheets) -> bool:
         sheets.warnings.append(
             Message(
                 (
-                    "no feedback sheets are printed for more than {most:,} students, and {count:,} answered: add "
+                    "no feedback sheets are printed for more than {most:,} students, and {count:,} "
+                    "answered: add "
                     "--feedback to print them"
                 ),
                 count=count,
@@ -128,8 +139,8 @@ def write_marks(
     progress: Progress = lambda done, of: None,
     form: FeedbackForm = USUAL,
 ) -> Gradebook:
-    """Write the files of :func:`grade_files` for sheets that are marked on demand, with the
-    ``decisions`` that count; ``charged`` contains the penalties of late submissions as shares of the points."""
+    """Write the files of :func:`grade_files` for sheets that are marked on demand, with the ``decisions``
+    that count; ``charged`` contains the penalties of late submissions as shares of the points."""
     before = EarlierMarks(out / "marks.csv", issued.renamed)
     history = History(out, _day(form), issued.renamed, is_adjusted=bool(decisions.steps))
     check_steps(decisions.standing_steps, issued)
@@ -293,7 +304,8 @@ def _kept_copy(marks: Path) -> str:
     write_whole(copy, marks.read_bytes())
     return Message(
         (
-            "{file} had been edited and is written again: the edited file is now {copy}; to change a mark for "
+            "{file} had been edited and is written again: the edited file is now {copy}; to change a "
+            "mark for "
             "good, name it in {accepted}"
         ),
         file=marks.name,

@@ -40,8 +40,8 @@ NO_LABEL = Message(
 
 
 def languages_in(text: str) -> tuple[str, ...]:
-    """Return the languages of the labels in a question's text: several where a platform shows all languages of a
-    question at once."""
+    """Return the languages of the labels in a question's text: several where a platform shows all languages
+    of a question at once."""
     return tuple(dict.fromkeys(match["lang"] for match in _LABEL.finditer(text) if match["lang"]))
 
 

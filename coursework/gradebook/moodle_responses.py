@@ -1,7 +1,8 @@
 """Moodle's Responses report of a quiz: CSV in the language of the person who downloads it, or JSON.
 
-Its columns are known by their places and numbers, since Moodle translates their titles: who, then state, start, end and
-duration of the attempt and its grade, then for each question its text and the response, ``Question 1``, ``Response 1``.
+Its columns are known by their places and numbers, since Moodle translates their titles: who, then state,
+start, end and duration of the attempt and its grade, then for each question its text and the response,
+``Question 1``, ``Response 1``.
 """
 
 from __future__ import annotations
@@ -169,7 +170,8 @@ def _unfinished(
     state = cells[columns.state].strip()
     reason = Message(
         (
-            "the attempt is not finished but {state!r}: close or submit it in Moodle, and download the report "
+            "the attempt is not finished but {state!r}: close or submit it in Moodle, and download the "
+            "report "
             "again"
         ),
         state=state,
@@ -230,8 +232,8 @@ _LETTERED = re.compile(r"(?:\A|(?<=[\s;]))([a-z])\) ")
 
 
 def _letters_of(answer: str) -> str:
-    """Return the letters of cases that are written in several languages, ``b) swings b) oscille``; another answer as
-    it is."""
+    """Return the letters of cases that are written in several languages, ``b) swings b) oscille``; another
+    answer as it is."""
     letters = dict.fromkeys(_LETTERED.findall(answer))
     return ", ".join(letters) if _LETTERED.match(answer) else answer
 

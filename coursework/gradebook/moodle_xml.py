@@ -33,7 +33,8 @@ def moodle_xml(
     left = [student.name for student in scored if not number_of(student)]
     if len(left) == len(scored):
         raise BadInput(
-            "Moodle's XML names students by their ID number, and the class has none: give a roster with a column 'ID number' when "
+            "Moodle's XML names students by their ID number, and the class has none: give a roster "
+            "with a column 'ID number' when "
             "exporting, or fill a --template"
         )
     for student in scored:

@@ -258,8 +258,8 @@ def _tags(cell: dict[str, Any]) -> list[Any]:
 def literal_answers(code: str) -> dict[Any, Any] | str:
     """Return the dict of an answers cell, or a message about its fault. Nothing is executed.
 
-    ``answers = {…}`` or a bare ``{…}`` of texts, numbers, None, and lists or tuples of these. A value that is none of
-    them is the text that stands there; a cell that is no Python is read line by line.
+    ``answers = {…}`` or a bare ``{…}`` of texts, numbers, None, and lists or tuples of these. A value that is
+    none of them is the text that stands there; a cell that is no Python is read line by line.
     """
     if len(code) > _LONGEST:
         return Message("the answers cell is too long to be read")
@@ -423,13 +423,15 @@ def _pairs_of_line(line: str) -> list[tuple[Any, Any]] | None:
 def _not_as_written(number: int, line: str) -> str:
     if key := _KEY.match(line):
         return Message(
-            "the answers cell, line {line}, part {part}, is not written as in the notebook: quotes around text, a comma after each answer; found {found!r}",
+            "the answers cell, line {line}, part {part}, is not written as in the notebook: quotes "
+            "around text, a comma after each answer; found {found!r}",
             line=number,
             part=key[2][:40],
             found=line[:40],
         )
     return Message(
-        "the answers cell, line {line}, is not written as in the notebook: quotes around text, a comma after each answer; found {found!r}",
+        "the answers cell, line {line}, is not written as in the notebook: quotes around text, a comma "
+        "after each answer; found {found!r}",
         line=number,
         found=line[:40],
     )

@@ -19,7 +19,8 @@ _RIGHT = ("correct", "accepted", "follow_through")
 
 
 def own_drawings(variant: Variant, marks: Mapping[str, Mark]) -> tuple[OwnDrawing, ...]:
-    """Return the student's constructions over the right ones: what the solution lays over its own, else each polygon.
+    """Return the student's constructions over the right ones: what the solution lays over its own, else each
+    polygon.
 
     Parameters
     ----------

@@ -162,7 +162,8 @@ def _check_version(record: Mapping[str, Any], version: str) -> None:
     if version and version != str(record["version"]):
         raise UnplacedError(
             (
-                "the answers are to version {version} of {exercise}, and version {issued} was issued: name the "
+                "the answers are to version {version} of {exercise}, and version {issued} was issued: "
+                "name the "
                 "issued.json of the export that is on the platform"
             ),
             version=version,
@@ -235,8 +236,8 @@ def placed_rows(
     sheets: Sheets,
     doubts: Doubts,
 ) -> Iterator[PlacedRow]:
-    """Return an iterator of each row with its sheet, or the rejected row; it records in ``sheets`` what concerns all rows,
-    and notes rows in ``doubts``.
+    """Return an iterator of each row with its sheet, or the rejected row; it records in ``sheets`` what
+    concerns all rows, and notes rows in ``doubts``.
 
     Raises
     ------
@@ -280,7 +281,8 @@ def _check_records(course: Course, issued: Issued) -> None:
     for exercise, record_of_exercise in {key[0]: record for key, record in issued.records.items()}.items():
         if exercise not in course:
             raise UnknownName(
-                "no exercise {exercise!r} in {course}, though it was issued: name the course that it was built from, coursework --course FOLDER grade …",
+                "no exercise {exercise!r} in {course}, though it was issued: name the course that it "
+                "was built from, coursework --course FOLDER grade …",
                 exercise=exercise,
                 course=course.folder.label,
             )
@@ -295,7 +297,8 @@ def _place_cache(issued: Issued) -> Callable[[AnswerRow], SheetKey | str]:
     lasting = passing.copy()
 
     def place_told(row: AnswerRow) -> SheetKey | str:
-        # Whom a platform names and no roster is who they were when first met; others are found again as they were.
+        # Whom a platform names and no roster is who they were when first met; others are found again as they
+        # were.
         memory = lasting if row.origin is not None and not issued.has_roster else passing
         named = row.student, row.exercise, row.seed, row.origin
         if (key := memory.get(named)) is None:
@@ -392,7 +395,8 @@ def _latest_warning(issued: Issued, key: SheetKey) -> str:
     """Return the warning that answers without a seed count for the latest sitting."""
     return Message(
         (
-            "{student}, {exercise}: answers without a seed count for sitting {sitting}, seed {seed}, the latest; "
+            "{student}, {exercise}: answers without a seed count for sitting {sitting}, seed {seed}, "
+            "the latest; "
             "write the seed of the other sitting if they belong to it"
         ),
         student=key[0],

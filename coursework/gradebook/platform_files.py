@@ -1,4 +1,5 @@
-"""Exports of platforms and wide tables, recognised by their content and not by their name: a table of readers."""
+"""Exports of platforms and wide tables, recognised by their content and not by their name: a table of
+readers."""
 
 from __future__ import annotations
 

@@ -37,21 +37,35 @@ PLATFORMS = {
     for one in (
         # A point is read by Moodle in every language, a comma only where the language has it.
         PlatformGradebook(
-            "moodle", "Moodle", r"(?:[^:()]{1,30}?\s?:\s)?(?P<item>.*?)(?:\s\([^()]+\))?", "Grades, Export, Plain text file", decimal=".",
+            "moodle",
+            "Moodle",
+            r"(?:[^:()]{1,30}?\s?:\s)?(?P<item>.*?)(?:\s\([^()]+\))?",
+            "Grades, Export, Plain text file",
+            decimal=".",
         ),
         PlatformGradebook(
-            "canvas", "Canvas", r"(?P<item>.*?)(?:\s\([0-9]+\))?", "Grades, Export, Export Entire Gradebook",
-            ("EX",), "points possible", ".",
+            "canvas",
+            "Canvas",
+            r"(?P<item>.*?)(?:\s\([0-9]+\))?",
+            "Grades, Export, Export Entire Gradebook",
+            ("EX",),
+            "points possible",
+            ".",
         ),
         PlatformGradebook(
-            "blackboard", "Blackboard", r"(?P<item>.*?)(?:\s\[[^\[\]|]*?:\s*(?P<most>[0-9.,]+)[^\[\]|]*\])?\s*(?:\|[0-9]+)?",
+            "blackboard",
+            "Blackboard",
+            r"(?P<item>.*?)(?:\s\[[^\[\]|]*?:\s*(?P<most>[0-9.,]+)[^\[\]|]*\])?\s*(?:\|[0-9]+)?",
             "Grade Center, Work Offline, Download",
         ),
         PlatformGradebook(
-            "sakai", "Sakai", r"(?P<item>.*?)(?:\s\[(?P<most>[0-9.,]+)\])?", "Gradebook, Import/Export, Export",
+            "sakai",
+            "Sakai",
+            r"(?P<item>.*?)(?:\s\[(?P<most>[0-9.,]+)\])?",
+            "Gradebook, Import/Export, Export",
         ),
     )
-}  # fmt: skip
+}
 
 
 def platform_gradebook(name: str) -> PlatformGradebook:

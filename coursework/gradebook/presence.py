@@ -13,10 +13,27 @@ from coursework.issuing.issued import Issued
 
 PRESENT, ABSENT, EXCUSED = "present", "absent", "excused"
 _STATES = {
-    **dict.fromkeys(("present", "presente", "present(e)", "p", "x", "yes", "oui", "o", "1", "true", "vrai"), PRESENT),
-    **dict.fromkeys(("absent", "absente", "absent(e)", "abs", "a", "abi", "no", "non", "n", "0", "defaillant"), ABSENT),
-    **dict.fromkeys(("excused", "excuse", "excusee", "excuse(e)", "abj", "justifie", "justifiee", "dispense", "dispensee"), EXCUSED),
-}  # fmt: skip
+    **dict.fromkeys(
+        ("present", "presente", "present(e)", "p", "x", "yes", "oui", "o", "1", "true", "vrai"), PRESENT
+    ),
+    **dict.fromkeys(
+        ("absent", "absente", "absent(e)", "abs", "a", "abi", "no", "non", "n", "0", "defaillant"), ABSENT
+    ),
+    **dict.fromkeys(
+        (
+            "excused",
+            "excuse",
+            "excusee",
+            "excuse(e)",
+            "abj",
+            "justifie",
+            "justifiee",
+            "dispense",
+            "dispensee",
+        ),
+        EXCUSED,
+    ),
+}
 
 
 def presence_in(columns: Mapping[str, str]) -> str:
@@ -31,7 +48,8 @@ def presence_on_roster(issued: Issued) -> dict[str, str]:
 
 
 def presence_near(folder: Path) -> dict[str, str]:
-    """Return what is filled in of the ``attendance.csv`` of a folder of marks or of its build, by student as written.
+    """Return what is filled in of the ``attendance.csv`` of a folder of marks or of its build, by student as
+    written.
 
     Raises
     ------
@@ -55,7 +73,7 @@ def presence_near(folder: Path) -> dict[str, str]:
 
 
 def presence_by_student(folder: Path, issued: Issued) -> dict[str, str]:
-    """Return the presence that the ``attendance.csv`` of a folder of marks states, else the roster, by student as the
-    record shows them."""
+    """Return the presence that the ``attendance.csv`` of a folder of marks states, else the roster, by
+    student as the record shows them."""
     near = {issued.student(name) or name: presence for name, presence in presence_near(folder).items()}
     return presence_on_roster(issued) | near

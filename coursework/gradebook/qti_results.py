@@ -81,7 +81,8 @@ def _item(item: ET.Element, student: str, source: str, warning: str) -> Iterator
     ]
     if match is None:
         reason = Message(
-            "this item has another name than the export gave it, such as set-exercise-v1-4-en, so its variant is "
+            "this item has another name than the export gave it, such as set-exercise-v1-4-en, so its "
+            "variant is "
             "unknown"
         )
         yield from (

@@ -28,7 +28,8 @@ def _in_order(course: Course, name: str, parts: Mapping[str, None]) -> list[str]
 
 
 def numbers_on_papers(questions: Sequence[Question], issued: Issued) -> dict[Question, str]:
-    """Return the numbers of questions on the papers that ask them, such as ``2.3``; ``2.3/2.4`` where they differ."""
+    """Return the numbers of questions on the papers that ask them, such as ``2.3``; ``2.3/2.4`` where they
+    differ."""
     positions: dict[Question, set[int]] = {question: set() for question in questions}
     for (name, _), record in issued.records.items():
         for position, part in enumerate(record["parts"], start=1):

@@ -57,7 +57,8 @@ class AnswerRow(NamedTuple):
     origin: RowOrigin | None = None  #: where a platform collected it
 
 
-#: English place of an answer in a file. A file of a million rows states one in each: as a message each would cost more.
+#: English place of an answer in a file. A file of a million rows states one in each: as a message each would
+#: cost more.
 _PLACE = re.compile(r"(?P<file>.*?), (?P<unit>line|row|item) (?P<number>\d+)(?P<rest>(?:, .*)?)", re.DOTALL)
 _UNITS = {"line": "{file}, line {line}", "row": "{file}, row {line}", "item": "{file}, item {line}"}
 

@@ -20,8 +20,8 @@ def mark_of(issued: Issued, points: float, out_of: float) -> str:
     """Return the mark as text, ``14.5``: the share of the points, rounded half up to a step; empty if the
     assignment has no marks.
 
-    A scale may state the points that are worth the best mark, ``full``, or a ``curve`` of points and marks, both out of a
-    ``total``.
+    A scale may state the points that are worth the best mark, ``full``, or a ``curve`` of points and marks,
+    both out of a ``total``.
     """
     scale = (issued.assignment or {}).get("mark")
     return mark_on(scale, points, out_of) if scale else ""

@@ -1,4 +1,5 @@
-"""Marks of a semester: a line for each student, the marks of all assignments out of 20, and their weighted average."""
+"""Marks of a semester: a line for each student, the marks of all assignments out of 20, and their weighted
+average."""
 
 from __future__ import annotations
 
@@ -65,7 +66,8 @@ class SemesterLine:
 
 
 def assessed(marks: Path, weight: float, name: str = "") -> Assessed:
-    """Return the marks of a folder that ``grade`` wrote, or of the build above it; its ``issued.json`` and ``attendance.csv`` beside it are read too.
+    """Return the marks of a folder that ``grade`` wrote, or of the build above it; its ``issued.json`` and
+    ``attendance.csv`` beside it are read too.
 
     Raises
     ------
@@ -83,7 +85,8 @@ def assessed(marks: Path, weight: float, name: str = "") -> Assessed:
         of = float(scale.get("of", USUAL_SCALE["of"]))
     if above := next((entry for entry in scored if typed_number(entry.points) > of), None):
         raise BadInput(
-            "{file}: the mark {mark} of {student} is above {of:g}; keep issued.json beside the folder of marks, which states the maximum",
+            "{file}: the mark {mark} of {student} is above {of:g}; keep issued.json beside the folder "
+            "of marks, which states the maximum",
             file=path,
             mark=above.points,
             student=above.name,
@@ -142,7 +145,8 @@ def average(line: SemesterLine, assignments: Sequence[Assessed], absence: str) -
 
 
 def unsettled(line: SemesterLine, assignments: Sequence[Assessed]) -> dict[str, list[str]]:
-    """Return what keeps a line from being final: provisional, absent and excused, with the names of the assignments."""
+    """Return what keeps a line from being final: provisional, absent and excused, with the names of the
+    assignments."""
     results = {a.name: line.results.get(a.name, Assessment(None, ABSENT)).status for a in assignments}
     return {
         status: names
@@ -152,7 +156,8 @@ def unsettled(line: SemesterLine, assignments: Sequence[Assessed]) -> dict[str, 
 
 
 def status_of(line: SemesterLine, assignments: Sequence[Assessed]) -> str:
-    """Return a line's status as ``semester.csv`` has it: ``provisional: final; absent: midterm``; else ``final``."""
+    """Return a line's status as ``semester.csv`` has it: ``provisional: final; absent: midterm``; else
+    ``final``."""
     told = [f"{status}: {', '.join(names)}" for status, names in unsettled(line, assignments).items()]
     return "; ".join(told) or FINAL
 
@@ -167,7 +172,8 @@ def columns_of(lines: Iterable[SemesterLine], assignments: Sequence[Assessed]) -
 def rows(
     lines: Iterable[SemesterLine], assignments: Sequence[Assessed], absence: str, sign: str = "."
 ) -> Iterator[dict[str, Any]]:
-    """Yield the rows of ``semester.csv``: numbers, and the text ``12.5*``, with this decimal sign, of what may still change."""
+    """Yield the rows of ``semester.csv``: numbers, and the text ``12.5*``, with this decimal sign, of what
+    may still change."""
     for line in lines:
         results = {a.name: line.results.get(a.name, Assessment(None, ABSENT)) for a in assignments}
         waits = any(result.status == PROVISIONAL for result in results.values())

@@ -68,8 +68,8 @@ def _submitted_file(by: tuple[str, ...], time: str, root: str, platform: str, fo
 
 
 def latest(files: Iterable[Path]) -> list[Path]:
-    """Return the files in the order of their names; of each student's submissions of an assignment in an exchange
-    folder, those of the last one alone, as nbgrader collects them."""
+    """Return the files in the order of their names; of each student's submissions of an assignment in an
+    exchange folder, those of the last one alone, as nbgrader collects them."""
     last: dict[tuple[Path, str, str], tuple[str, str]] = {}
     kept: list[tuple[Path, tuple[Path, str, str] | None, tuple[str, str]]] = []
     for file in sorted(files):
@@ -81,8 +81,8 @@ def latest(files: Iterable[Path]) -> list[Path]:
 
 
 def _exchange_submission(file: Path) -> tuple[tuple[Path, str, str] | None, tuple[str, str]]:
-    """Return the exchange folder, student and assignment of a file, None if it is of no exchange; and the time and
-    the folder of its submission."""
+    """Return the exchange folder, student and assignment of a file, None if it is of no exchange; and the
+    time and the folder of its submission."""
     for folder in file.parents:
         if match := _EXCHANGE.fullmatch(folder.name):
             return (folder.parent, match["student"], match["assignment"]), (match["time"], folder.name)

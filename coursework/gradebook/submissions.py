@@ -55,8 +55,8 @@ ENDINGS = (".csv", ".json", ".ipynb", ".parquet", ".xml", ".tsv")
 
 
 def find(paths: Iterable[Path]) -> Iterator[Path | Rejected]:
-    """Yield the files to read; the files of a folder in the order of their names, without earlier submissions in a
-    folder of nbgrader's exchange.
+    """Yield the files to read; the files of a folder in the order of their names, without earlier submissions
+    in a folder of nbgrader's exchange.
 
     Raises
     ------
@@ -119,7 +119,8 @@ def _odd_file(path: Path) -> Rejected:
 def read_file(path: Path, given: Iterable[Path] = ()) -> Iterator[AnswerRow | Rejected | PlatformFile]:
     """Yield the rows of one file; a file that cannot be read is one rejected row.
 
-    ``given`` is what somebody named, a folder of which may hold the file: nothing outside of that folder is read.
+    ``given`` is what somebody named, a folder of which may hold the file: nothing outside of that folder is
+    read.
     """
     folder = folder_of(path, given)
     handed = submitted_file(path) if path.suffix.lower() == ".ipynb" else None
@@ -381,7 +382,8 @@ def _csv_row(
         if delimiter == "," and len(cells) > len(header):
             cells_read["answer"] = joined["answer"]
             reason = Message(
-                "{problem}; put an answer with a comma between quotation marks, or semicolons between all cells",
+                "{problem}; put an answer with a comma between quotation marks, or semicolons between "
+                "all cells",
                 problem=reason,
             )
         yield Rejected(location, reason, cells_read)

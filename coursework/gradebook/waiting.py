@@ -124,9 +124,11 @@ def _known(margins: Mapping[str, float | None]) -> dict[str, float]:
 
 
 def groups(
-    graded: Iterable[Graded], measured: Mapping[SheetOfStudent, Measure], order: Sequence[tuple[str, str]],
+    graded: Iterable[Graded],
+    measured: Mapping[SheetOfStudent, Measure],
+    order: Sequence[tuple[str, str]],
     drawn: frozenset[tuple[str, str]] = frozenset(),
-) -> list[AnswerGroup]:  # fmt: skip
+) -> list[AnswerGroup]:
     """Return the answers that may be reviewed, question by question in ``order`` (exercise and part), then by
     reason, the largest groups first.
 
@@ -161,10 +163,11 @@ def groups(
 def undecided(
     groups: Iterable[AnswerGroup], decisions: Decisions, current: Mapping[SheetOfStudent, Graded]
 ) -> Iterator[tuple[AnswerGroup, tuple[AnswerToReview, ...]]]:
-    """Yield groups with those of their answers whose mark a person may still change; none of a question that counts for nobody.
+    """Yield groups with those of their answers whose mark a person may still change; none of a question that
+    counts for nobody.
 
-    ``current`` are the sheets with the decisions and adjustments applied: an answer that a wider margin or another price
-    gave all its points waits no more.
+    ``current`` are the sheets with the decisions and adjustments applied: an answer that a wider margin or
+    another price gave all its points waits no more.
     """
     statuses = decisions.adjustments.statuses
     for group in groups:

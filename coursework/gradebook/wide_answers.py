@@ -1,4 +1,5 @@
-"""Answers typed from paper: a line for each student, a column for each question, titled ``1.2 slotted_mechanism rA (mm)``."""
+"""Answers typed from paper: a line for each student, a column for each question, titled
+``1.2 slotted_mechanism rA (mm)``."""
 
 from __future__ import annotations
 

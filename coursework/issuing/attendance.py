@@ -23,7 +23,8 @@ _LISTED = 5  #: names that a note lists
 
 
 def exam_lists(issued_papers: Sequence[IssuedPaper], lang: str) -> ExamLists:
-    """Return the lists of an exam: rooms in their order, and in each the students by seat, else as on the roster."""
+    """Return the lists of an exam: rooms in their order, and in each the students by seat, else as on the
+    roster."""
     rooms: dict[str, list[ListedStudent]] = {}
     for issued_paper in _by_student(issued_papers):
         student = _listed(issued_paper, lang)
@@ -68,7 +69,8 @@ def _extra(issued_paper: IssuedPaper, lang: str) -> str:
 def list_files(
     renderer: Renderer, issued_papers: Sequence[IssuedPaper], langs: Sequence[str], spreadsheet: Spreadsheet
 ) -> Iterator[File]:
-    """Yield the lists of an exam for the staff, and the table of attendance to fill in; nothing without a roster."""
+    """Yield the lists of an exam for the staff, and the table of attendance to fill in; nothing without a
+    roster."""
     if not _by_student(issued_papers):
         return
     folder = Path("instructor")
@@ -86,7 +88,8 @@ def _printed(renderer: Renderer, issued_papers: Sequence[IssuedPaper], lang: str
 
 
 def seating_faults(students: Sequence[Student]) -> Iterator[Message]:
-    """Yield a note on each seat that two students have, and on students without a room where others have one."""
+    """Yield a note on each seat that two students have, and on students without a room where others have
+    one."""
     seats: dict[tuple[str, str], list[str]] = {}
     for student in students:
         if seat := seat_of(student.columns):

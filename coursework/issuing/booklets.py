@@ -1,9 +1,9 @@
 """Booklets: the sheets of all students in one PDF to print, and a table of their pages.
 
 A booklet has a limited number of exercises; a larger class gets several, named by the sheets they hold. The
-typesetter keeps a whole document in memory, two megabytes a page, and joining PDFs would lose the accessibility
-tags. For the same reason one is made after the other. Solutions have more pages than sheets, and nobody hands them out:
-their booklets have fewer exercises.
+typesetter keeps a whole document in memory, two megabytes a page, and joining PDFs would lose the
+accessibility tags. For the same reason one is made after the other. Solutions have more pages than sheets,
+and nobody hands them out: their booklets have fewer exercises.
 """
 
 from __future__ import annotations
@@ -43,8 +43,8 @@ class Booklet:
 def parted(
     name: str, sheets: Sequence[_Sheet], exercises: int = 1, limit: int = 0
 ) -> Iterator[tuple[str, Sequence[_Sheet]]]:
-    """Yield each booklet's name and its sheets, of so many exercises each; at most ``limit`` in a booklet, by default
-    :data:`EXERCISES`."""
+    """Yield each booklet's name and its sheets, of so many exercises each; at most ``limit`` in a booklet, by
+    default :data:`EXERCISES`."""
     digits, most = len(str(len(sheets))), max(1, (limit or EXERCISES) // exercises)
     for start in range(0, len(sheets), most):
         part = sheets[start : start + most]

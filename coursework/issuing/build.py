@@ -174,8 +174,8 @@ def _tex(
 def _booklets(
     issued_papers: Sequence[IssuedPaper], limit: int
 ) -> Iterator[tuple[str, Sequence[IssuedPaper], str]]:
-    """Yield the name, the papers and the language of each booklet of a build, of at most so many exercises: of each
-    language, and of each exercise that is handed out alone."""
+    """Yield the name, the papers and the language of each booklet of a build, of at most so many exercises:
+    of each language, and of each exercise that is handed out alone."""
     groups: dict[tuple[str, str], list[IssuedPaper]] = {}
     for issued_paper in sorted(issued_papers, key=lambda issued_paper: issued_paper.sorted_by):
         for lang in issued_paper.first.langs:

@@ -1,4 +1,5 @@
-"""Measures of a build that is not written, on some of its papers: pages, white space, points, and variants that are left."""
+"""Measures of a build that is not written, on some of its papers: pages, white space, points, and variants
+that are left."""
 
 from __future__ import annotations
 
@@ -39,7 +40,8 @@ class DryRun:
 def dry_run(
     course: Course[Any], issues: Sequence[Issue], assignment: Assignment | None, *, paper: str, scan: bool
 ) -> DryRun:
-    """Return the measures of a build; at most :data:`SAMPLE` papers are typeset, of different versions and languages first."""
+    """Return the measures of a build; at most :data:`SAMPLE` papers are typeset, of different versions and
+    languages first."""
     all_papers = papers(assignment, issues, polygons=False, scan=paper if scan else "")
     printed = [(issued_paper, lang) for issued_paper in all_papers for lang in issued_paper.first.langs]
     alike: dict[tuple[Any, ...], list[tuple[IssuedPaper, str]]] = {}

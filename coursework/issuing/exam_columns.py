@@ -1,4 +1,5 @@
-"""Columns of a roster that an exam uses: group, room, seat and extra time, and those that no table of marks repeats."""
+"""Columns of a roster that an exam uses: group, room, seat and extra time, and those that no table of marks
+repeats."""
 
 from __future__ import annotations
 
@@ -13,12 +14,17 @@ from coursework.issuing.identity import EXTRA_TIME, GROUP, ROOM, SEAT, plain
 THIRD = Fraction(1, 3)  #: of the duration: the extra time of a roster that only says who has some
 _SHARES = {
     **dict.fromkeys(("", "0", "no", "non", "n", "false", "faux", "-", "–", "none", "aucun"), Fraction(0)),
-    **dict.fromkeys(("1", "x", "yes", "oui", "o", "y", "true", "vrai", "✓", "✔", "tiers", "un tiers", "1 tiers"), THIRD),
-    **dict.fromkeys(("third", "a third", "one third", "tiers temps", "tiers-temps", "1/3 temps", "33", "0.33"), THIRD),
+    **dict.fromkeys(
+        ("1", "x", "yes", "oui", "o", "y", "true", "vrai", "✓", "✔", "tiers", "un tiers", "1 tiers"), THIRD
+    ),
+    **dict.fromkeys(
+        ("third", "a third", "one third", "tiers temps", "tiers-temps", "1/3 temps", "33", "0.33"), THIRD
+    ),
     **dict.fromkeys(("half", "a half", "demi", "la moitie", "mi-temps", "mi temps"), Fraction(1, 2)),
-}  # fmt: skip
+}
 _PRIVATE = re.compile(
-    r"birth|\bborn\b|(?<!nom de )naissance|\bne(?:e|\(e\))? le\b|^nee?$|handicap|disab|health|\bsante\b|medical|\brqth\b"
+    r"birth|\bborn\b|(?<!nom de )naissance|\bne(?:e|\(e\))? le\b|^nee?$|handicap|disab|health|\bsante\b"
+    r"|medical|\brqth\b"
     r"|amenagement|accommodation|\bsexe?\b|\bgender\b|\bgenre\b|nationalit|telephone|\bphone\b|\bboursier"
 )
 _DURATION = re.compile(
@@ -75,7 +81,8 @@ def _share(text: str) -> Fraction | None:
 
 
 def is_private(title: str) -> bool:
-    """Return whether a column is about birth, health or another matter that a table of marks does not repeat."""
+    """Return whether a column is about birth, health or another matter that a table of marks does not
+    repeat."""
     return plain(title) in EXTRA_TIME or _PRIVATE.search(plain(title)) is not None
 
 

@@ -14,7 +14,8 @@ _ACCENTS = dict.fromkeys(range(0x300, 0x370))
 
 
 def plain(title: str) -> str:
-    """Return a title without case, accents, underscores, and punctuation at its ends: ``N° étudiant`` is ``no etudiant``."""
+    """Return a title without case, accents, underscores, and punctuation at its ends: ``N° étudiant`` is
+    ``no etudiant``."""
     letters = unicodedata.normalize("NFD", folded(title.replace("_", " ").replace("°", "o "))).translate(
         _ACCENTS
     )
@@ -30,39 +31,118 @@ def _titles(*names: str) -> tuple[str, ...]:
 
 
 WHOLE = _titles(
-    "student", "étudiant", "élève", "full name", "nom complet", "nom et prénom", "nom prénom", "nom et prénoms", "prénom nom",
-    "prénom et nom", "nom, prénom", "student name", "nom de l'étudiant", "nom étudiant",
-)  # fmt: skip
+    "student",
+    "étudiant",
+    "élève",
+    "full name",
+    "nom complet",
+    "nom et prénom",
+    "nom prénom",
+    "nom et prénoms",
+    "prénom nom",
+    "prénom et nom",
+    "nom, prénom",
+    "student name",
+    "nom de l'étudiant",
+    "nom étudiant",
+)
 #: The name in use takes precedence over the name at birth.
 SURNAME = _titles(
-    "nom d'usage", "nom usuel", "nom marital", "nom", "name", "surname", "last name", "lastname", "family name",
-    "nom de famille", "nom patronymique", "nom de naissance",
-)  # fmt: skip
+    "nom d'usage",
+    "nom usuel",
+    "nom marital",
+    "nom",
+    "name",
+    "surname",
+    "last name",
+    "lastname",
+    "family name",
+    "nom de famille",
+    "nom patronymique",
+    "nom de naissance",
+)
 FIRST_NAME = _titles(
-    "prénom d'usage", "prénom usuel", "prénom", "prénoms", "prénom 1", "premier prénom", "first name", "firstname", "given name",
-    "forename", "prénom de l'étudiant",
-)  # fmt: skip
+    "prénom d'usage",
+    "prénom usuel",
+    "prénom",
+    "prénoms",
+    "prénom 1",
+    "premier prénom",
+    "first name",
+    "firstname",
+    "given name",
+    "forename",
+    "prénom de l'étudiant",
+)
 _NUMBER_FIRST = _titles("number", "student number", "student id", "id")
 NUMBER = (
     *_NUMBER_FIRST,
     *_titles(
-        "id number", "numéro", "numéro d'étudiant", "numéro étudiant", "numéro de l'étudiant", "n°", "n° étudiant",
-        "n° d'étudiant", "num", "num étudiant", "no", "code étudiant", "code apogée", "numéro apogée", "n° apogée", "matricule",
-        "numéro de matricule", "numéro de carte étudiant", "ine", "code ine", "numéro ine", "n° ine", "ine/bea", "nip", "code nip",
+        "id number",
+        "numéro",
+        "numéro d'étudiant",
+        "numéro étudiant",
+        "numéro de l'étudiant",
+        "n°",
+        "n° étudiant",
+        "n° d'étudiant",
+        "num",
+        "num étudiant",
+        "no",
+        "code étudiant",
+        "code apogée",
+        "numéro apogée",
+        "n° apogée",
+        "matricule",
+        "numéro de matricule",
+        "numéro de carte étudiant",
+        "ine",
+        "code ine",
+        "numéro ine",
+        "n° ine",
+        "ine/bea",
+        "nip",
+        "code nip",
     ),
-)  # fmt: skip
+)
 EMAIL = _titles(
-    "email", "e-mail", "mail", "email address", "e-mail address", "courriel", "adresse de courriel", "adresse e-mail",
-    "adresse email", "adresse mail", "adresse électronique", "adresse de messagerie", "email institutionnel",
-    "e-mail institutionnel", "mail institutionnel", "courriel institutionnel", "adresse mail institutionnelle",
-    "adresse e-mail institutionnelle", "adresse email institutionnelle", "adresse électronique institutionnelle",
-    "email universitaire", "mail universitaire", "adresse mail universitaire", "mail étudiant", "email étudiant",
-)  # fmt: skip
+    "email",
+    "e-mail",
+    "mail",
+    "email address",
+    "e-mail address",
+    "courriel",
+    "adresse de courriel",
+    "adresse e-mail",
+    "adresse email",
+    "adresse mail",
+    "adresse électronique",
+    "adresse de messagerie",
+    "email institutionnel",
+    "e-mail institutionnel",
+    "mail institutionnel",
+    "courriel institutionnel",
+    "adresse mail institutionnelle",
+    "adresse e-mail institutionnelle",
+    "adresse email institutionnelle",
+    "adresse électronique institutionnelle",
+    "email universitaire",
+    "mail universitaire",
+    "adresse mail universitaire",
+    "mail étudiant",
+    "email étudiant",
+)
 #: Further identifiers of platforms.
 LOGIN = _titles(
-    "sis user id", "sis login id", "integration id", "username", "login", "nom d'utilisateur", "identifiant",
+    "sis user id",
+    "sis login id",
+    "integration id",
+    "username",
+    "login",
+    "nom d'utilisateur",
+    "identifiant",
     "numéro d'identification",
-)  # fmt: skip
+)
 #: What an exam is organised by.
 _GROUP = _titles("group", "groupe", "class group", "groupe de td")
 GROUP = (*_GROUP, *_titles("groupe td", "groupe de tp", "td", "tutorial group"))
@@ -71,9 +151,17 @@ SEAT = _titles(
     "seat", "place", "siège", "seat number", "n° de place", "numéro de place", "n° de table", "table"
 )
 EXTRA_TIME = _titles(
-    "extra time", "extra-time", "tiers temps", "tiers-temps", "1/3 temps", "temps majoré", "majoration de temps", "majoration",
-    "temps supplémentaire", "temps additionnel",
-)  # fmt: skip
+    "extra time",
+    "extra-time",
+    "tiers temps",
+    "tiers-temps",
+    "1/3 temps",
+    "temps majoré",
+    "majoration de temps",
+    "majoration",
+    "temps supplémentaire",
+    "temps additionnel",
+)
 PRESENCE = _titles("present", "présent", "presence", "présence")
 _PRINTED = {
     "number": (
@@ -106,7 +194,8 @@ def is_called(title: str, titles: Iterable[str]) -> bool:
 def printed_columns(
     titles: Iterable[Any], values: Mapping[str, str], lang: str
 ) -> tuple[tuple[str, str], ...]:
-    """Return columns of a roster as a sheet prints them, from a student's line by folded titles; empty where it has none."""
+    """Return columns of a roster as a sheet prints them, from a student's line by folded titles; empty where
+    it has none."""
     return tuple((_printed_title(str(title), lang), values.get(folded(str(title)), "")) for title in titles)
 
 
@@ -120,7 +209,8 @@ def _printed_title(title: str, lang: str) -> str:
 
 
 def is_same_column(title: str, wanted: str) -> bool:
-    """Return whether a column is the one that is named: by its title, or by another usual title of what it holds."""
+    """Return whether a column is the one that is named: by its title, or by another usual title of what it
+    holds."""
     known = (NUMBER, EMAIL, GROUP, ROOM, SEAT, EXTRA_TIME)
     return plain(title) == plain(wanted) or any(
         {plain(title), plain(wanted)} <= {*titles} for titles in known

@@ -32,8 +32,8 @@ class Issued:
     Several students may share a record, as with versions, and a student may have an exercise in several
     sittings. The records of a pool belong to nobody: a platform draws, and every student may get any of them.
 
-    As long as an assignment is anonymous, students go by their codes, unless the record is read ``by_name``; a name or an
-    identifier still leads to its code.
+    As long as an assignment is anonymous, students go by their codes, unless the record is read ``by_name``;
+    a name or an identifier still leads to its code.
     """
 
     def __init__(self, content: Mapping[str, Any], source: str, *, by_name: bool = False):
@@ -74,7 +74,8 @@ class Issued:
             except _Unfit as fault:
                 raise BadInput(
                     (
-                        "{source}, item {number} of {count} is not an issued record: {problem}; 'coursework build' writes "
+                        "{source}, item {number} of {count} is not an issued record: {problem}; "
+                        "'coursework build' writes "
                         "them"
                     ),
                     source=source,
@@ -133,7 +134,8 @@ class Issued:
         return bool(self._shown)
 
     def renamed(self, name: str) -> str:
-        """Return a name or a code of an earlier table as the record shows the student now; any other text as it is."""
+        """Return a name or a code of an earlier table as the record shows the student now; any other text as
+        it is."""
         return (self.student(name) or name) if self._codes and name else name
 
     def _add_owner(self, student: str, key: tuple[str, int], sitting: int) -> None:
@@ -277,7 +279,8 @@ class Issued:
         return part
 
     def among(self, students: Collection[str]) -> Issued:
-        """Return the record as it is for some of the students: all variants, and nothing else of the others."""
+        """Return the record as it is for some of the students: all variants, and nothing else of the
+        others."""
         part = copy(self)
         part.has_roster = True
         part.students = tuple(student for student in self.students if student in students)
@@ -357,8 +360,11 @@ class _Unfit(ValueError):
 _ITEM = {"student": str, "sitting": int, "version": str}
 _RECORD = {"exercise": str, "seed": int, "version": int, "parts": list, "given": dict, "lang": str}
 _KIND_NAMES = {
-    str: Message("a text"), int: Message("a whole number, 0 or more"), list: Message("a list"), dict: Message("an object"),
-}  # fmt: skip
+    str: Message("a text"),
+    int: Message("a whole number, 0 or more"),
+    list: Message("a list"),
+    dict: Message("an object"),
+}
 
 
 def _record_of(item: Any) -> dict[str, Any]:
@@ -503,8 +509,9 @@ def issued_content(
     secret: Secret | None = None,
     lifted: str = "",
 ) -> dict[str, Any]:
-    """Return the content of ``issued.json``: the record of each student, without answers. With a ``secret``, or with codes,
-    the file is for the instructor only; ``lifted`` is the day on which names took the place of codes."""
+    """Return the content of ``issued.json``: the record of each student, without answers. With a ``secret``,
+    or with codes, the file is for the instructor only; ``lifted`` is the day on which names took the place of
+    codes."""
     codes = {i.student: i.code for i in issues if i.code}
     columns = {i.student: dict(i.columns) for i in issues if i.student and i.columns}
     return {
@@ -561,8 +568,8 @@ def record_with_answers(variant: Issuable, rounded: Callable[..., Any] = _as_it_
     return {**variant.record, "answers": answers}
 
 
-#: Significant digits of a number in the key, counted from the largest component of its answer, or from its margin if
-#: that is larger. Further digits differ between processors.
+#: Significant digits of a number in the key, counted from the largest component of its answer, or from its
+#: margin if that is larger. Further digits differ between processors.
 KEY_DIGITS = 10
 
 
@@ -605,7 +612,8 @@ def key_rows(key: Iterable[Mapping[str, Any]]) -> Iterator[dict[str, Any]]:
 
 
 def by_code(issues: Iterable[Issue]) -> list[Issue]:
-    """Return the issued variants in the order of the codes, which tells nothing of the names; as they are without codes."""
+    """Return the issued variants in the order of the codes, which tells nothing of the names; as they are
+    without codes."""
     return sorted(issues, key=lambda issue: (issue.code, issue.sitting if issue.code else 0))
 
 

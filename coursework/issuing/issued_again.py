@@ -19,7 +19,8 @@ def issued_again(course: Course, issued: Issued, langs: Sequence[str] = ()) -> l
     Raises
     ------
     BadInput
-        The record is of an assignment or a pool, has a later version, or an exercise has no text in a language.
+        The record is of an assignment or a pool, has a later version, or an exercise has no text in a
+        language.
     UnknownName
         The course lacks an exercise.
     """

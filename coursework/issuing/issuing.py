@@ -90,7 +90,8 @@ def distinct_variants(
         )
         raise Starved(
             (
-                "{exercise}: {variants} requested, {reason}{flaws}; request fewer, widen a range or make a step finer"
+                "{exercise}: {variants} requested, {reason}{flaws}; request fewer, widen a range or "
+                "make a step finer"
             ),
             exercise=exercise.name,
             variants=counted(count, "different variant"),
@@ -147,7 +148,8 @@ def drawn_by(
     people
         Keys of the people.
     used_values
-        Given values that no variant may have; those of the result are added. All variants differ while variants last.
+        Given values that no variant may have; those of the result are added. All variants differ while
+        variants last.
     fits
         Further condition on a variant.
     secret
@@ -197,7 +199,8 @@ def drawn_by(
     if len(variants) < len(people):
         raise Starved(
             (
-                "{exercise}: no valid variant was found for {students}{flaws}; widen a range or make a step finer"
+                "{exercise}: no valid variant was found for {students}{flaws}; widen a range or make a "
+                "step finer"
             ),
             exercise=exercise.name,
             students=counted(len(people) - len(variants), "student"),
@@ -221,7 +224,8 @@ def reservations(exercise: CourseExercise[V], variant: V) -> list[str]:
         return []
     return [
         Message(
-            "{exercise}: a draw would refuse these values, where a wrong answer may pass for right, or rounding cost a right one: {flaws}",
+            "{exercise}: a draw would refuse these values, where a wrong answer may pass for right, or "
+            "rounding cost a right one: {flaws}",
             exercise=exercise.name,
             flaws=", ".join(map(localised, refused)),
         )
@@ -283,8 +287,9 @@ def issue(
     """Return one variant of each exercise for each student, by the student and not by the position in the
     roster; without a roster, ``count`` variants from the first seed on.
 
-    ``parts`` are ids of parts to ask instead of the usual ones; each exercise asks those that it has. ``given`` states
-    values that are not drawn; each exercise takes those that it has. ``note`` is called with notes for the user.
+    ``parts`` are ids of parts to ask instead of the usual ones; each exercise asks those that it has.
+    ``given`` states values that are not drawn; each exercise takes those that it has. ``note`` is called with
+    notes for the user.
 
     Raises
     ------

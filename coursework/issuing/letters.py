@@ -20,7 +20,8 @@ def unprinted_names(renderer: Renderer, names: Iterable[str]) -> list[str]:
     more = ", …" if len(lacking) > _NAMED else ""
     note = Message(
         (
-            "{names} with letters that no font of the PDF has, printed as squares: {named}; put a font with these"
+            "{names} with letters that no font of the PDF has, printed as squares: {named}; put a font "
+            "with these"
             " letters (.ttf, .otf) into templates/fonts of the course"
         ),
         names=counted(len(lacking), "name"),

@@ -205,8 +205,8 @@ def instructions_of(assignment: Assignment, lang: str) -> str:
 
 
 def own_duration(duration: str, columns: Mapping[str, str]) -> str:
-    """Return the duration of a student's exam: with the extra time of the roster, if there is some and the duration is
-    one of hours and minutes."""
+    """Return the duration of a student's exam: with the extra time of the roster, if there is some and the
+    duration is one of hours and minutes."""
     share, minutes = extra_time_of(columns), minutes_of(duration)
     return duration if not share or minutes is None else duration_text(with_extra(minutes, share))
 

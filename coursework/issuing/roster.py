@@ -46,9 +46,9 @@ def read_roster(
 ) -> list[Student]:
     """Return the students of a CSV.
 
-    The file has a column ``student``, or surname and first name, and, if wanted, ``lang``; the lists that Moodle, Canvas and
-    French registrars' offices export are read unchanged. Rows above the heading are skipped. Numbers or e-mails distinguish
-    people of the same name.
+    The file has a column ``student``, or surname and first name, and, if wanted, ``lang``; the lists that
+    Moodle, Canvas and French registrars' offices export are read unchanged. Rows above the heading are
+    skipped. Numbers or e-mails distinguish people of the same name.
 
     Parameters
     ----------
@@ -57,13 +57,14 @@ def read_roster(
     warn
         Called with notes: an unused column, a row without a student, an unusual encoding.
     columns
-        Column of each of ``name``, ``first``, ``number``, ``email`` and ``lang``, by its number from 1 on or by its title, if
-        the titles are not the usual ones.
+        Column of each of ``name``, ``first``, ``number``, ``email`` and ``lang``, by its number from 1 on or
+        by its title, if the titles are not the usual ones.
 
     Raises
     ------
     BadInput
-        The file cannot be read, has a row without a name or with too many cells, names no student, or one twice.
+        The file cannot be read, has a row without a name or with too many cells, names no student, or one
+        twice.
     """
     lines = _rows(path, warn) or [(1, [])]
     header, rows = _heading(path, lines, columns, warn)
@@ -97,7 +98,8 @@ def read_roster(
         if any(cell.strip() for cell in cells[len(titles) :]):
             raise BadInput(
                 (
-                    "{location}: {cells} where the header has {most}; put a name with a comma or a semicolon between "
+                    "{location}: {cells} where the header has {most}; put a name with a comma or a "
+                    "semicolon between "
                     "quotation marks, or give the column a title"
                 ),
                 location=location,
@@ -134,7 +136,8 @@ def read_roster(
     if untitled:
         warn(
             Message(
-                "the roster {file} has a column without a title, which is not used; give it a title to use it",
+                "the roster {file} has a column without a title, which is not used; give it a title to "
+                "use it",
                 file=path,
             )
         )
@@ -223,7 +226,8 @@ def _tell_lost(path: Path, titles: Sequence[str], warn: Callable[[str], None]) -
         if often > 1:
             warn(
                 Message(
-                    "the roster {file} has {count} columns {title}; the last one is used: give each its own title",
+                    "the roster {file} has {count} columns {title}; the last one is used: give each "
+                    "its own title",
                     file=path,
                     count=often,
                     title=title,
@@ -242,7 +246,8 @@ def _apart(path: Path, lines: Sequence[tuple[int, Student]]) -> list[Student]:
         if folded(student.name) in seen:
             raise BadInput(
                 (
-                    "the roster {file}, line {number}: {student} is already on line {other}; distinguish them, for "
+                    "the roster {file}, line {number}: {student} is already on line {other}; "
+                    "distinguish them, for "
                     "instance by a number"
                 ),
                 file=path,

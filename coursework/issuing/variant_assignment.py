@@ -62,8 +62,8 @@ def assign_variants(
     Raises
     ------
     BadInput
-        Other exercises were issued before, an exercise has no text in one of the languages, or a student who makes up is
-        unknown.
+        Other exercises were issued before, an exercise has no text in one of the languages, or a student who
+        makes up is unknown.
     Starved
         An exercise has no variant that is worth issuing.
     """
@@ -150,7 +150,8 @@ class _Assigner:
         ):
             raise BadInput(
                 (
-                    "{assignment} has changed since it was issued there, and issued papers do not change; choose another "
+                    "{assignment} has changed since it was issued there, and issued papers do not "
+                    "change; choose another "
                     "--out, or --overwrite to issue new ones"
                 ),
                 assignment=assignment.name,
@@ -344,14 +345,22 @@ class _Assigner:
         """Return a variant for each person, all different while variants last."""
         given_by_seed = {variant.seed: tuple(variant.given.values()) for variant in issued}
         variants, shared = drawn_by(
-            self.assignment.name, exercise, people, self.langs[0], asked_exercise.parts, set(given_by_seed.values()),
-            secret=self._key, issued_values=given_by_seed, stated=asked_exercise.given,
-        )  # fmt: skip
+            self.assignment.name,
+            exercise,
+            people,
+            self.langs[0],
+            asked_exercise.parts,
+            set(given_by_seed.values()),
+            secret=self._key,
+            issued_values=given_by_seed,
+            stated=asked_exercise.given,
+        )
         if shared:
             self.notes.append(
                 Message(
                     (
-                        "{exercise}: {count} of {papers} share a variant with another, as there are not enough different ones"
+                        "{exercise}: {count} of {papers} share a variant with another, as there are "
+                        "not enough different ones"
                     ),
                     exercise=exercise.name,
                     count=len(shared),

@@ -15,11 +15,12 @@ from coursework.sheets.units import units_text
 def wide_form(
     issues: Sequence[Issue], identity: Sequence[str] = ()
 ) -> tuple[list[str], list[dict[str, Any]]]:
-    """Return the columns and the rows of ``answers_wide.csv``, which :mod:`coursework.gradebook.wide_answers` reads.
+    """Return the columns and the rows of ``answers_wide.csv``, which :mod:`coursework.gradebook.wide_answers`
+    reads.
 
-    A column is titled by the number of its question on the papers, all its numbers if these differ, the exercise, the part and
-    the unit. What a paper does not ask is dashed on its line. ``identity`` names columns of the roster by which a person
-    finds a line.
+    A column is titled by the number of its question on the papers, all its numbers if these differ, the
+    exercise, the part and the unit. What a paper does not ask is dashed on its line. ``identity`` names
+    columns of the roster by which a person finds a line.
     """
     issues, identity = by_code(issues), () if any(issue.code for issue in issues) else identity
     needs_seeds = any(not issue.student or issue.sitting > 1 for issue in issues)

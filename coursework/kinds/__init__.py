@@ -1,1 +1,2 @@
-"""Kinds of parts, a file each: how an answer is read, how far it is, what is right, how it is printed and written."""
+"""Kinds of parts, a file each: how an answer is read, how far it is, what is right, how it is printed and
+written."""

@@ -15,7 +15,8 @@ _NONE = "none"  #: what is ticked, and read, where no case is right
 
 
 def cases_of(value: Any) -> frozenset[str]:
-    """Return the names of cases that a reference holds: ``"stable fast"``, ``"stable, fast"``, or a set; ``""`` is none."""
+    """Return the names of cases that a reference holds: ``"stable fast"``, ``"stable, fast"``, or a set;
+    ``""`` is none."""
     if isinstance(value, (set, frozenset, tuple, list)):
         return frozenset(map(str, value))
     return frozenset(str(value).replace(",", " ").replace(";", " ").split())

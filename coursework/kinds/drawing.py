@@ -14,7 +14,8 @@ _WIDEST, _HIGHEST = 160, 240  #: mm, of what a page holds
 
 
 class Drawing(OpenKind):
-    """Drawn on paper, so that nothing of it comes with the other answers: it waits for a person all the same."""
+    """Drawn on paper, so that nothing of it comes with the other answers: it waits for a person all the
+    same."""
 
     name = "drawing"
     box = "blank"
@@ -33,6 +34,7 @@ class Drawing(OpenKind):
             fits = False
         if not fits:
             raise WrongValue(
-                f"its room is its width and height in mm, 10 to {_WIDEST} and 10 to {_HIGHEST}; found {room!r}"
+                f"its room is its width and height in mm, 10 to {_WIDEST} and 10 to {_HIGHEST}; found "
+                f"{room!r}"
             )
         return (int(wide), int(high))

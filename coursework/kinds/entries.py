@@ -14,8 +14,8 @@ from coursework.kinds.nearness import in_half_widths, offset
 class Entries(Kind):
     """An array of real entries, of the shape of its reference: right where every entry is.
 
-    The half-width is the same for all entries: the larger of ``atol`` and ``rtol`` times the largest entry of the
-    reference, or the envelope where that is wider.
+    The half-width is the same for all entries: the larger of ``atol`` and ``rtol`` times the largest entry of
+    the reference, or the envelope where that is wider.
     """
 
     is_followed = has_cells = True

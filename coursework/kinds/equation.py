@@ -1,4 +1,5 @@
-"""An equation in the exercise's symbols, up to a factor: judged by the points that it holds at, never by its spelling."""
+"""An equation in the exercise's symbols, up to a factor: judged by the points that it holds at, never by its
+spelling."""
 
 from __future__ import annotations
 

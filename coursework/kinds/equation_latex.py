@@ -8,8 +8,11 @@ from coursework.parsing.equations import parse_equation
 from coursework.parsing.trees import Operation
 
 _LATEX_FUNCTIONS = {
-    "asin": r"\arcsin", "acos": r"\arccos", "atan": r"\arctan", "atan2": r"\operatorname{atan2}",
-}  # fmt: skip
+    "asin": r"\arcsin",
+    "acos": r"\arccos",
+    "atan": r"\arctan",
+    "atan2": r"\operatorname{atan2}",
+}
 _LATEX_CONSTANTS = {"pi": r"\pi", "e": "e", "i": "i"}
 
 

@@ -25,8 +25,8 @@ def _graph(value: Any) -> Graph:
 
 
 class JointGraphKind(Kind):
-    """The solution returns it as text, ``1-2 revolute, 3-4-5 revolute, 1-6 prismatic``: of bodies that one pivot holds
-    together, all in one joint. The frame is the body of the lowest number."""
+    """The solution returns it as text, ``1-2 revolute, 3-4-5 revolute, 1-6 prismatic``: of bodies that one
+    pivot holds together, all in one joint. The frame is the body of the lowest number."""
 
     name = "graph"
     is_exact = is_text = has_rule = share_stands = True

@@ -1,7 +1,8 @@
 """Interface of all kinds of parts: reading, judging, printing, and the spellings of students.
 
-A part says its kind by a word, and the word is the stem of a file of this room: ``number`` is :mod:`coursework.kinds.number`.
-A course may bring kinds of its own: a class derived from :class:`Kind` that an exercise imports is known by its ``name``.
+A part says its kind by a word, and the word is the stem of a file of this room: ``number`` is
+:mod:`coursework.kinds.number`. A course may bring kinds of its own: a class derived from :class:`Kind` that
+an exercise imports is known by its ``name``.
 """
 
 from __future__ import annotations
@@ -81,8 +82,8 @@ class AnswerSpelling(NamedTuple):
 
 
 class Kind(ABC):
-    """One kind of part. A newcomer has a ``name``, reads, measures a distance, and says how a value is written;
-    where the rest differs from what stands here, it says so."""
+    """One kind of part. A newcomer has a ``name``, reads, measures a distance, and says how a value is
+    written; where the rest differs from what stands here, it says so."""
 
     name: ClassVar[str] = ""  #: the word by which a part asks for it
     goes_with: ClassVar[tuple[str, ...]] = ()  #: fields of a part that come with this kind, and must
@@ -208,7 +209,8 @@ class Kind(ABC):
         return not self.is_exact and not value
 
     def share(self, part: Stated, value: Any, reference: Any) -> float:
-        """Return the share of the points that an answer earns which is not wholly right, and which no mistake explains."""
+        """Return the share of the points that an answer earns which is not wholly right, and which no mistake
+        explains."""
         return 0.0
 
     def checked_room(self, room: Any) -> Any:
@@ -216,11 +218,13 @@ class Kind(ABC):
         return room
 
     def slips(self, part: Stated, value: Any, reference: Any, numbers: Mapping[str, float]) -> Iterator[str]:
-        """Slips of this kind alone that explain a wrong value; ``numbers`` are the given ones that are no angles."""
+        """Slips of this kind alone that explain a wrong value; ``numbers`` are the given ones that are no
+        angles."""
         yield from ()
 
     def others(self, part: Stated, value: Any, half_width: float) -> tuple[Any, ...]:
-        """Wrong values for a right one: just beyond what is accepted, and far from it; few cases have one other."""
+        """Wrong values for a right one: just beyond what is accepted, and far from it; few cases have one
+        other."""
         return ()
 
     def remarks(self, part: Stated, value: Any, reference: Any, lang: str) -> Iterator[tuple[str, str]]:
@@ -243,21 +247,25 @@ class Kind(ABC):
         return (unit,)
 
     def keys(self, part: Stated) -> tuple[str, ...]:
-        """Return what an answer needs and keyboards of numbers lack, each as a page inserts it; ``,`` for the decimal sign."""
+        """Return what an answer needs and keyboards of numbers lack, each as a page inserts it; ``,`` for the
+        decimal sign."""
         if self.is_text or self.is_open:
             return ()
         return "-", ",", "(", ")", "^", "√(", "π", *(("°",) if part.unit == "deg" else ())
 
     def units_asked(self, part: Stated, asking: Asking) -> tuple[int, ...]:
-        """Return the places in :meth:`units` of the columns, in the order in which the question asks for them."""
+        """Return the places in :meth:`units` of the columns, in the order in which the question asks for
+        them."""
         return tuple(range(len(self.units(part.unit))))
 
     def cells(self, part: Stated, asking: Asking) -> tuple[tuple[ComponentBox, ...], ...]:
-        """Return the boxes for the components in the order of :meth:`coordinates`, in groups that stand together."""
+        """Return the boxes for the components in the order of :meth:`coordinates`, in groups that stand
+        together."""
         return (tuple(ComponentBox(symbol, part.unit) for symbol in self.coordinates(part, asking)),)
 
     def formula(self, value: np.ndarray, number: Callable[[float], str]) -> str:
-        """Return a reference that is an array, as a formula without its unit; nothing where its entries say enough."""
+        """Return a reference that is an array, as a formula without its unit; nothing where its entries say
+        enough."""
         return ""
 
     def latex(self, value: str, symbols: Mapping[str, str]) -> str:
@@ -275,8 +283,8 @@ class Kind(ABC):
         return ()
 
     def from_paper(self, boxes: Sequence[str], part: Stated, asking: Asking, *, unit: bool = False) -> str:
-        """Return the answer that a page says, as :meth:`read` takes it: of the number of each row, or of the ticked cases;
-        ``unit``: the box beside the printed unit is ticked."""
+        """Return the answer that a page says, as :meth:`read` takes it: of the number of each row, or of the
+        ticked cases; ``unit``: the box beside the printed unit is ticked."""
         behind = f" {part.unit}" if unit and part.unit != "1" else ""
         return f"{self.joined(boxes, part, asking)}{behind}"
 
@@ -288,7 +296,8 @@ class Kind(ABC):
 
     @abstractmethod
     def written(self, value: Any, digits: int, label: Callable[[str], str]) -> str:
-        """Return a right answer as a careful student writes it, without its unit, to so many significant digits."""
+        """Return a right answer as a careful student writes it, without its unit, to so many significant
+        digits."""
 
     def comma(self, written: str) -> str:
         """Return the same with decimal commas."""

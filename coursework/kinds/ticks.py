@@ -8,7 +8,8 @@ from coursework.kinds.kind import Asking, Stated, Tick
 
 
 def lettered_ticks(part: Stated, asking: Asking) -> tuple[Tick, ...]:
-    """Return the cases with their letters, in the order printed; by name where the sheet prints no letters."""
+    """Return the cases with their letters, in the order printed; by name where the sheet prints no
+    letters."""
     letters = asking.letters(part)
     return tuple(Tick(case, letters.get(case, case)) for case in letters or part.choices)
 
@@ -20,9 +21,11 @@ def by_letters(boxes: Sequence[str], part: Stated, asking: Asking) -> str:
 
 
 def share_of_named(named: Set[str], right: Set[str], count: int) -> float:
-    """Return the share of the points that ``named`` cases earn, of ``count`` cases of which some are ``right``.
+    """Return the share of the points that ``named`` cases earn, of ``count`` cases of which some are
+    ``right``.
 
-    Each right case earns its share, each wrong one costs as :func:`cost_of_wrong` says. The share is never below 0.
+    Each right case earns its share, each wrong one costs as :func:`cost_of_wrong` says. The share is never
+    below 0.
     """
     if not right:
         return 0.0

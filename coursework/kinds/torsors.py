@@ -1,7 +1,7 @@
 """Base of twists and wrenches: two columns, each judged by its own largest component, and their exchange.
 
-A torsor is an array of six: the resultant in the basis of the question before the moment at its point. A plane one, in
-the plane xy, is an array of three: ``(vx, vy, wz)`` of a twist, ``(X, Y, N)`` of a wrench.
+A torsor is an array of six: the resultant in the basis of the question before the moment at its point. A
+plane one, in the plane xy, is an array of three: ``(vx, vy, wz)`` of a twist, ``(X, Y, N)`` of a wrench.
 """
 
 from __future__ import annotations
@@ -28,8 +28,9 @@ _PARALLEL = 1e-9  #: of what is square to the resultant but for rounding
 class Torsor(Kind):
     """Components at a point, right where each is within the half-width of its own column.
 
-    The half-width of a column is the larger of ``atol`` and ``rtol`` times the largest component of the reference there;
-    that of the moments is the envelope where that is wider. ``unit`` is that of the moments, ``of_resultant`` goes with it.
+    The half-width of a column is the larger of ``atol`` and ``rtol`` times the largest component of the
+    reference there; that of the moments is the envelope where that is wider. ``unit`` is that of the moments,
+    ``of_resultant`` goes with it.
     """
 
     is_followed = of_largest = share_stands = has_cells = True
@@ -89,7 +90,8 @@ class Torsor(Kind):
         return float(np.max(self._gaps(part, value, reference, envelope)))
 
     def size(self, reference: Any) -> float:
-        """Return the largest moment: the margin that is told is that of the second column; of a torsor without moments, the resultant."""
+        """Return the largest moment: the margin that is told is that of the second column; of a torsor
+        without moments, the resultant."""
         absolute = np.abs(np.asarray(reference, dtype=float))
         return float(np.max(absolute[self._places(len(absolute))[1]])) or float(np.max(absolute))
 
@@ -97,7 +99,8 @@ class Torsor(Kind):
         return not np.any(value)
 
     def share(self, part: Stated, value: Any, reference: Any) -> float:
-        """Return the share of components that are right, noughts too; none where nothing that is not 0 is right."""
+        """Return the share of components that are right, noughts too; none where nothing that is not 0 is
+        right."""
         right = self._gaps(part, value, reference, 0.0) <= 1
         return float(np.mean(right)) if np.any(right & (np.asarray(reference) != 0)) else 0.0
 

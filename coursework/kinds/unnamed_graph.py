@@ -11,8 +11,8 @@ from coursework.parsing.graphs import Graph, renamed
 
 
 class UnnamedGraph(JointGraphKind):
-    """As :class:`~coursework.kinds.graph.JointGraphKind`; any numbers, letters or words may stand for the bodies. Who says which is
-    the frame (``frame``, ``bâti``, 0) must be right in that."""
+    """As :class:`~coursework.kinds.graph.JointGraphKind`; any numbers, letters or words may stand for the
+    bodies. Who says which is the frame (``frame``, ``bâti``, 0) must be right in that."""
 
     name = "unnamed_graph"
     named = False

@@ -16,8 +16,8 @@ LAWS = ("parabolic", "harmonic", "cycloidal", "polynomial_345", "polynomial_4567
 
 
 def rise_345(u: Any) -> tuple[Any, Any, Any]:
-    """Return the lift, 0 to 1 as ``u`` goes from 0 to 1, and its first and second derivatives by ``u``; at rest
-    outside.
+    """Return the lift, 0 to 1 as ``u`` goes from 0 to 1, and its first and second derivatives by ``u``; at
+    rest outside.
 
     Parameters
     ----------
@@ -83,7 +83,8 @@ def _cycloidal(u: Any) -> Any:
 
 
 def rise(law: Any, u: Any) -> tuple[Any, Any, Any, Any]:
-    """Return the lift by one of the :data:`LAWS` and its first three derivatives by ``u``; at rest outside 0 to 1.
+    """Return the lift by one of the :data:`LAWS` and its first three derivatives by ``u``; at rest outside 0
+    to 1.
 
     Parameters
     ----------
@@ -93,9 +94,8 @@ def rise(law: Any, u: Any) -> tuple[Any, Any, Any, Any]:
         Cam angle as a share of the angle of the rise; a scalar or an array.
 
     Returns
-    -------
-    The lift as a share of the whole rise, its first, second and third derivatives, of the broadcast shape. Where a
-    derivative jumps, at both ends it is that of the rest.
+    ------- The lift as a share of the whole rise, its first, second and third derivatives, of the broadcast
+      shape. Where a derivative jumps, at both ends it is that of the rest.
     """
     moving = (u > 0) & (u < 1)
     u = np.minimum(np.maximum(u, 0.0), 1.0)

@@ -150,7 +150,8 @@ class ClosedChain:
             converged = bool(converged)
             if not converged:
                 raise CannotAssemble(
-                    "the loops do not close from this start: a gap of {residual:.3g} is left; another start, nearer to the pose that is meant, may close, or none exists",
+                    "the loops do not close from this start: a gap of {residual:.3g} is left; another "
+                    "start, nearer to the pose that is meant, may close, or none exists",
                     residual=residual,
                 )
         return Pose(dict(zip(self.unknowns, result, strict=True)), residual, condition, converged)
@@ -222,7 +223,8 @@ class ClosedChain:
         return results
 
     def _newton(self, values: dict[str, Any], x: np.ndarray, exponents: np.ndarray) -> tuple:
-        """Take damped Newton steps on rows of unknowns, each until its gap is rounding or no longer shrinks."""
+        """Take damped Newton steps on rows of unknowns, each until its gap is rounding or no longer
+        shrinks."""
         x = x.copy()
         gaps, size = self._gaps(values, x, exponents)
         best = _norm(gaps)

@@ -312,7 +312,8 @@ def out_of_reach(
     least, most = abs(p_length - q_length), p_length + q_length
     gap = max(distance - most, least - distance) if gap is None else gap
     return CannotAssemble(
-        "the linkage does not close: the pins are {distance:.6g} apart, but {subject}, {p_length:.6g} and {q_length:.6g} long, reach only {least:.6g} to {most:.6g} (gap {gap:.3g})",
+        "the linkage does not close: the pins are {distance:.6g} apart, but {subject}, {p_length:.6g} "
+        "and {q_length:.6g} long, reach only {least:.6g} to {most:.6g} (gap {gap:.3g})",
         distance=distance,
         subject=Message(subject),
         p_length=p_length,
@@ -366,7 +367,8 @@ def _rrr_failure(p: Any, q: Any, p_length: Any, q_length: Any, _: Any) -> Course
     distance = float(np.hypot(np.real(q - p), np.imag(q - p)))
     if distance == 0 and p_length == q_length:
         return Undefined(
-            "the two bodies are both {p_length:.6g} long and their far pins coincide: they may point anywhere",
+            "the two bodies are both {p_length:.6g} long and their far pins coincide: they may point "
+            "anywhere",
             p_length=p_length,
         )
     return out_of_reach(distance, float(p_length), float(q_length))
@@ -383,7 +385,8 @@ def _rrp(p: Any, length: Any, point: Any, side: Any, along: Any) -> tuple[Any]:
 def _rrp_failure(p: Any, length: Any, point: Any, _: Any, along: Any) -> CannotAssemble:
     away = abs(float(cross(along, point - p)))
     return CannotAssemble(
-        "the linkage does not close: the line is {away:.6g} away from the pin, but the rod reaches only {length:.6g} (gap {gap:.3g})",
+        "the linkage does not close: the line is {away:.6g} away from the pin, but the rod reaches "
+        "only {length:.6g} (gap {gap:.3g})",
         away=away,
         length=length,
         gap=away - length,
@@ -405,7 +408,8 @@ def _rpr_failure(p: Any, q: Any, offset: Any, _: Any) -> CourseworkError:
     if distance >= abs(offset):
         return Undefined("the block lies on the guide's pivot: the guide has no direction there")
     return CannotAssemble(
-        "the linkage does not close: the block is {distance:.6g} from the guide's pivot, but the slot passes {offset:.6g} away (gap {gap:.3g})",
+        "the linkage does not close: the block is {distance:.6g} from the guide's pivot, but the slot "
+        "passes {offset:.6g} away (gap {gap:.3g})",
         distance=distance,
         offset=abs(offset),
         gap=abs(offset) - distance,

@@ -1,9 +1,11 @@
 """Tangent and arctangent of small arguments by sums, products and quotients alone.
 
-They are as fast as those on every processor, where numpy computes its own one number at a time unless it has functions for
-the vector units. Scalars or arrays; errors are below an ulp and a half of the result, near 0 too.
+They are as fast as those on every processor, where numpy computes its own one number at a time unless it has
+functions for the vector units. Scalars or arrays; errors are below an ulp and a half of the result, near 0
+too.
 
-Each is x + x^3 P / Q of x^2, where polynomials P and Q interpolate the function at Chebyshev's points, but for 2e-17 of it.
+Each is x + x^3 P / Q of x^2, where polynomials P and Q interpolate the function at Chebyshev's points, but
+for 2e-17 of it.
 """
 
 from __future__ import annotations
@@ -94,7 +96,8 @@ def _plus_cubed(x: Any, above: Sequence[float], below: Sequence[float]) -> Any:
 
 
 def _horner(result: Any, lower: Sequence[float], x: Any) -> Any:
-    """Evaluate a polynomial by Horner's rule, from the value of its highest terms and the lower coefficients."""
+    """Evaluate a polynomial by Horner's rule, from the value of its highest terms and the lower
+    coefficients."""
     for coefficient in reversed(lower):
         result *= x
         result += coefficient

@@ -347,11 +347,13 @@ class FourBar:
             return out_of_reach(distance, coupler, rocker, gap, "coupler and rocker")
         if m == 0.0:
             return Undefined(
-                "coupler and rocker are both {coupler:.6g} long and their far pins coincide: they may point anywhere",
+                "coupler and rocker are both {coupler:.6g} long and their far pins coincide: they may "
+                "point anywhere",
                 coupler=coupler,
             )
         return Undefined(
-            "coupler and rocker are in line (pins {distance:.6g} apart, lengths {coupler:.6g} and {rocker:.6g}): at a dead point the rates do not exist",
+            "coupler and rocker are in line (pins {distance:.6g} apart, lengths {coupler:.6g} and "
+            "{rocker:.6g}): at a dead point the rates do not exist",
             distance=distance,
             coupler=coupler,
             rocker=rocker,

@@ -1,9 +1,9 @@
 """Slider moved by the rocker of a four-bar: its turning points over a full turn of the crank.
 
 The crank turns about O = (0, 0) and moves the rocker by the coupler; the rocker turns about D, which lies at
-``ground`` from O in the direction ``ground_angle``. A rod joins the inner joint B to the slider C, to the right of B on
-the line y = ``line``. The slider turns back where the rocker does, crank and coupler in line, and wherever the
-rod lines up with the rocker: two, four or more times a turn.
+``ground`` from O in the direction ``ground_angle``. A rod joins the inner joint B to the slider C, to the
+right of B on the line y = ``line``. The slider turns back where the rocker does, crank and coupler in line,
+and wherever the rod lines up with the rocker: two, four or more times a turn.
 """
 
 from __future__ import annotations
@@ -24,8 +24,8 @@ from coursework.kinematics.vectors import cross
 class RockerSlider(NamedTuple):
     """Rocker-driven slider mechanism, or an array of them; the numbers broadcast.
 
-    Lengths are positive, in one common unit, ``line`` of either sign; angles radians. ``side`` is +1 where B lies left of the
-    line from the crank pin to D, -1 where right: it stays so over the turn.
+    Lengths are positive, in one common unit, ``line`` of either sign; angles radians. ``side`` is +1 where B
+    lies left of the line from the crank pin to D, -1 where right: it stays so over the turn.
     """
 
     ground: Any
@@ -65,8 +65,8 @@ class RockerSlider(NamedTuple):
         Raises
         ------
         CannotAssemble
-            Scalars only: the crank does not turn fully, or the rod does not reach its line all turn; says by how
-            much. NaN throughout in arrays.
+            Scalars only: the crank does not turn fully, or the rod does not reach its line all turn; says by
+            how much. NaN throughout in arrays.
 
         Source
         ------
@@ -80,12 +80,12 @@ class RockerSlider(NamedTuple):
     def stroke(self) -> Any:
         """Return the distance between the extreme positions of the slider, however often it turns back.
 
-        A small crank costs no digit: nothing is a difference of two places. Errors as in :meth:`turning_points`.
+        A small crank costs no digit: nothing is a difference of two places. Errors as in
+        :meth:`turning_points`.
 
         Source
-        ------
-        The rocker swings between the directions where crank and coupler are in line; within that arc the slider
-        turns back where the rod is in line with the rocker.
+        ------ The rocker swings between the directions where crank and coupler are in line; within that arc
+          the slider turns back where the rod is in line with the rocker.
         """
         shape, flat, closes = self._closed_all_turn()
         with np.errstate(all="ignore"):
@@ -215,7 +215,8 @@ def _rocker_ratio(rocker: Any, coupler: Any, crank: Any) -> Any:
 
 
 def _advance_of_slider(angle: Any, *mechanism: Any) -> Any:
-    """Return the derivative of the slider's abscissa by the crank angle: C has no velocity across its line."""
+    """Return the derivative of the slider's abscissa by the crank angle: C has no velocity across its
+    line."""
     ground, ground_angle, *_, rod, line = mechanism
     vectors = rocker, *_ = _rocker_and_coupler(angle, *mechanism[:6])
     rise = line - ground * np.sin(ground_angle) - rocker.imag

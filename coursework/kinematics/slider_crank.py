@@ -210,7 +210,8 @@ class SliderCrank:
         return self._evaluate(_conditioning, crank_angle)[0]
 
     def stroke(self) -> Any:
-        """Return the distance between the two dead centres of a crank that turns fully, without cancellation."""
+        """Return the distance between the two dead centres of a crank that turns fully, without
+        cancellation."""
         outer, inner = self._dead_centres()
         t = self._linkage
         with np.errstate(all="ignore"):
@@ -229,7 +230,8 @@ class SliderCrank:
             return np.arctan2(t.offset * stroke, t.offset * t.offset + outer * inner)[()]
 
     def _dead_centres(self) -> tuple[Any, Any]:
-        """Return the distances from O to the slider where rod and crank are in line, outer and inner, scaled."""
+        """Return the distances from O to the slider where rod and crank are in line, outer and inner,
+        scaled."""
         t = self._linkage
         with np.errstate(all="ignore"):
             inner = np.sqrt((t.rod - t.crank - t.offset) * (t.rod - t.crank + t.offset))
@@ -281,7 +283,8 @@ class SliderCrank:
         if least < 0:
             gap = math.ldexp(-least, int(self._exponent))
             return CannotAssemble(
-                "the linkage does not close: the line is {away:.6g} away from the crank pin, but the rod reaches only {rod:.6g} (gap {gap:.3g})",
+                "the linkage does not close: the line is {away:.6g} away from the crank pin, but the "
+                "rod reaches only {rod:.6g} (gap {gap:.3g})",
                 away=away,
                 rod=rod,
                 gap=gap,
@@ -292,7 +295,8 @@ class SliderCrank:
 
 
 def time_ratio_excess(excess: Any) -> Any:
-    """Return the time ratio of the longer to the shorter stroke minus 1, without loss of digits when the strokes are nearly equal.
+    """Return the time ratio of the longer to the shorter stroke minus 1, without loss of digits when the
+    strokes are nearly equal.
 
     Parameters
     ----------

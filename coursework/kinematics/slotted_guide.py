@@ -120,8 +120,8 @@ def swing(ground: Any, crank: Any) -> Any:
 class SlottedGuidePose:
     """Slotted guide at a crank angle. Each property is computed once, on first use.
 
-    Angles in radians; derivatives by the crank angle. Parameters, frame and errors are those of :func:`motion`;
-    arrays are computed whole.
+    Angles in radians; derivatives by the crank angle. Parameters, frame and errors are those of
+    :func:`motion`; arrays are computed whole.
     """
 
     def __init__(self, ground: Any, crank: Any, crank_angle: Any):
@@ -204,8 +204,9 @@ class _ScaledGuide:
         ratio = (self.r * self.gap + 0.5 * self.swept.cos_squared) / self.squared
         return np.where(self.gap == 0, 0.5, ratio), -self._pull
 
-    # Of the arm's square m = g^2 + c, with g = r - d, c and s the swept squares: the derivatives of arm and angle are
-    # quotients of sums over m. Where A passes near O4 both g^2 and c are small, and no difference of them is left.
+    # Of the arm's square m = g^2 + c, with g = r - d, c and s the swept squares: the derivatives of arm and
+    # angle are quotients of sums over m. Where A passes near O4 both g^2 and c are small, and no difference
+    # of them is left.
 
     @cached_property
     def second(self) -> tuple[Any, Any]:

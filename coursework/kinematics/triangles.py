@@ -1,7 +1,7 @@
 """Sides and angles of a triangle that keep their digits when it is flat or its angle is small.
 
-Lengths in one common unit, positive; scalars or arrays that broadcast. An angle that is given is in radians or a
-heading (:mod:`angles`), one that is found is in radians in [0, pi]. What is no triangle raises
+Lengths in one common unit, positive; scalars or arrays that broadcast. An angle that is given is in radians
+or a heading (:mod:`angles`), one that is found is in radians in [0, pi]. What is no triangle raises
 :class:`CannotAssemble` when every argument is a scalar, and is NaN there and only there in arrays.
 """
 
@@ -68,8 +68,8 @@ def corner(near: Any, other: Any, opposite: Any) -> Any:
 
 
 def corner_beside(first: Any, other: Any, angle: Any, third: Any) -> Any:
-    """Return the angle between ``first`` and the third side, given the angle between ``first`` and ``other`` as
-    well.
+    """Return the angle between ``first`` and the third side, given the angle between ``first`` and ``other``
+    as well.
 
     ``third`` decides: if it differs from what the two sides and their angle give, being rounded or measured,
     the angle is that of the triangle of the three sides. If it agrees, a flat triangle costs no digit.
@@ -93,9 +93,8 @@ def corner_beside(first: Any, other: Any, angle: Any, third: Any) -> Any:
         Scalars only: the three sides make no triangle.
 
     Source
-    ------
-    Sine and cosine together: Heron's formula and the law of cosines, each as the value that the angle gives and
-    what the third side changes of it.
+    ------ Sine and cosine together: Heron's formula and the law of cosines, each as the value that the angle
+      gives and what the third side changes of it.
     """
     half_cos, half_sin = half_angle(angle)
     square = _square_of_third(first, other, half_sin)
@@ -123,7 +122,8 @@ def _refuse_if_negative(margin: Any, other_margin: Any, *sides: Any) -> None:
     if np.ndim(margin) == 0 and min(margin, other_margin) < 0:
         text = ", ".join(f"{side:.6g}" for side in sides[:2])
         raise CannotAssemble(
-            "the sides {shorter} and {longest:.6g} make no triangle: the longest exceeds the two others together",
+            "the sides {shorter} and {longest:.6g} make no triangle: the longest exceeds the two "
+            "others together",
             shorter=text,
             longest=sides[2],
         )

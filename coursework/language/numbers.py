@@ -17,7 +17,8 @@ def localise(number: str, lang: str) -> str:
     return number.replace("-", MINUS).replace(".", style["decimal"])
 
 
-#: A hyphen before a number, and one between spaces before a number; what stands between dollar signs sets its own.
+#: A hyphen before a number, and one between spaces before a number; what stands between dollar signs sets its
+#: own.
 _HYPHEN = re.compile(r"\$+[^$]*\$+|(?<![\w.)\]-])-(?=\.?\d)|(?<=\S )-(?= \.?\d)")
 
 
@@ -51,7 +52,8 @@ _EXACT = 1e-9  #: of a number that is printed as it is, and no rounded one
 
 
 def settled(value: float) -> float:
-    """Return a computed number to ten digits, its last bits set aside, which differ from one processor to another.
+    """Return a computed number to ten digits, its last bits set aside, which differ from one processor to
+    another.
 
     Halfway between two printed numbers, as 46.75 is to a tenth, they would choose between the two.
     """
@@ -59,7 +61,8 @@ def settled(value: float) -> float:
 
 
 def rounded(value: float, decimals: int) -> float:
-    """Return a computed number as it is printed or drawn, to so many decimals: whatever its last bits, and never ``-0.0``."""
+    """Return a computed number as it is printed or drawn, to so many decimals: whatever its last bits, and
+    never ``-0.0``."""
     return round(settled(value), decimals) + 0.0
 
 
@@ -82,7 +85,8 @@ def significant(value: float, digits: int = 4) -> str:
 
 
 def unit_text(unit: str, lang: str) -> str:
-    """Return a canonical unit as printed: ``cm^4`` -> ``cm⁴``, ``ohm`` -> ``Ω``, ``deg`` -> ``°``, ``1`` -> nothing."""
+    """Return a canonical unit as printed: ``cm^4`` -> ``cm⁴``, ``ohm`` -> ``Ω``, ``deg`` -> ``°``, ``1`` ->
+    nothing."""
     table = words(lang)["units"]
     if unit in table:
         return table[unit]

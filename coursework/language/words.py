@@ -28,15 +28,16 @@ def languages() -> tuple[str, ...]:
 
 @cache
 def words(lang: str, of: str = "") -> Mapping[str, Any]:
-    """Return the engine's words in one language, as nested tables of texts; ``of`` names those that a part of it has to itself, ``site``.
+    """Return the engine's words in one language, as nested tables of texts; ``of`` names those that a part of
+    it has to itself, ``site``.
 
     Raises
     ------
     UnknownName
         No such language.
     BadCourse
-        Its file cannot be read, lacks texts that English has, or has one of another kind or with other places to
-        fill.
+        Its file cannot be read, lacks texts that English has, or has one of another kind or with other places
+        to fill.
     """
     if lang not in languages():
         raise no_language(lang)

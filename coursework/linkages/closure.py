@@ -1,4 +1,5 @@
-"""Closure of a mechanism, asked of the frames of its bodies: how far its joints are from holding, and whether it turns all round."""
+"""Closure of a mechanism, asked of the frames of its bodies: how far its joints are from holding, and whether
+it turns all round."""
 
 from __future__ import annotations
 
@@ -73,8 +74,8 @@ def length_at(
         The other quantities that place the mechanism, scalars.
 
     Returns
-    -------
-    The length, the shortest if there are several; NaN where the body does not come to the angle between the limits.
+    ------- The length, the shortest if there are several; NaN where the body does not come to the angle
+      between the limits.
     """
     graph = _graph(tuple(functions()))
 
@@ -141,8 +142,9 @@ class RelativeGaps(tuple[Any, ...]):
 
 
 class SlideTrack(NamedTuple):
-    """Slide as the file states it: the sliding point, its body, the guide, a place on the line and its direction in the guide's frame
-    (mm, degrees; quantities or functions of them), the quantity that is the distance along it."""
+    """Slide as the file states it: the sliding point, its body, the guide, a place on the line and its
+    direction in the guide's frame (mm, degrees; quantities or functions of them), the quantity that is the
+    distance along it."""
 
     at: str
     of: str
@@ -169,23 +171,24 @@ def closure_gaps(
     tracks
         Its slides.
     sides
-        Of each triangle the inner joint, both outer ones, and the quantity that is +1 where the inner one lies on the left of the line
-        between the others.
+        Of each triangle the inner joint, both outer ones, and the quantity that is +1 where the inner one
+        lies on the left of the line between the others.
     driver
         Name of the driver's angle.
     order
         0 for positions, 1 with velocities, 2 with accelerations.
     values
-        Lengths in mm, angles in degrees, ``omega…`` and ``alpha…`` of the bodies; scalars or arrays that broadcast.
+        Lengths in mm, angles in degrees, ``omega…`` and ``alpha…`` of the bodies; scalars or arrays that
+        broadcast.
 
     Returns
     -------
     Gaps over the sizes of their terms, each of the broadcast shape.
 
     Source
-    ------
-    Every point that bodies share is placed by the frame of each, with ``i omega`` and ``i alpha - omega^2`` for its rates; a point
-    that slides stays on its line, and leaves the guide's own point by the sliding velocity and the Coriolis term.
+    ------ Every point that bodies share is placed by the frame of each, with ``i omega`` and
+      ``i alpha - omega^2`` for its rates; a point that slides stays on its line, and leaves the guide's own
+      point by the sliding velocity and the Coriolis term.
     """
     shape = np.broadcast_shapes(*(np.shape(v) for v in values.values()))
     flat = {n: np.ravel(np.broadcast_to(v, shape)) for n, v in values.items()}
@@ -219,7 +222,8 @@ class _Frames:
         self.origins.append((0j, 0j, 0j))
 
     def _stated(self, body: int, point: str, values: Mapping[str, Any]) -> tuple[complex, complex]:
-        """Return the velocity and the acceleration of the origin of a free body, where they are stated: it is free no more."""
+        """Return the velocity and the acceleration of the origin of a free body, where they are stated: it is
+        free no more."""
         if f"v_{point}_x" in values:
             self.free.remove(body)
         v, a = (
@@ -258,7 +262,8 @@ class _Frames:
     def _sizes(
         self, ends: Sequence[tuple[complex, complex, complex]], tracks: Sequence[SlideTrack]
     ) -> tuple[float, float, float]:
-        """Return the largest distance, velocity and acceleration: where nothing turns, those of what slides."""
+        """Return the largest distance, velocity and acceleration: where nothing turns, those of what
+        slides."""
         places = [*ends, *self.origins]
         far = max([1e-12, *(abs(place[0]) for place in places)])
         slid = [
@@ -274,7 +279,8 @@ class _Frames:
         return far, fast, faster
 
     def _of_gear(self, gear: GearJoint, order: int) -> list[float]:
-        """Return how far two wheels are from rolling on each other: their arcs, seen from the carrier, and the rates of these."""
+        """Return how far two wheels are from rolling on each other: their arcs, seen from the carrier, and
+        the rates of these."""
         first, second = gear.radii
         results = []
         for values in (self.turns, self.rates, self.gains)[: order + 1]:

@@ -1,4 +1,5 @@
-"""Compiler of a mechanism's file: the modules and texts of an exercise and of its solution, as an author would have written them."""
+"""Compiler of a mechanism's file: the modules and texts of an exercise and of its solution, as an author
+would have written them."""
 
 from __future__ import annotations
 
@@ -43,7 +44,9 @@ from coursework.linkages.closure import SlideTrack, closure_gaps, length_at, ref
 from coursework.linkages.large import LargeGroup
 """
 _EXERCISE_IMPORTS = """\
-from coursework.figures import Figure, angle_mark, circle, ground_pivot, line, link, pin, point, rail, slider, slot_link
+from coursework.figures import (
+    Figure, angle_mark, circle, ground_pivot, line, link, pin, point, rail, slider, slot_link,
+)
 from coursework.messages import Message
 from coursework.model import Driver, Exercise, Jack, Part, chosen, detectable, drawn, fixed
 """
@@ -51,7 +54,9 @@ _SOLUTION_IMPORTS = """from coursework.figures.polygons import (
     Side, normal, polygon_of_accelerations, polygon_of_velocities, tangential, turning,
 )
 from coursework.mechanics import Body, Gear, Load, Mechanism, Slide
-from coursework.marking.drawn_polygons import DrawingParts, if_long, met, off_both, scale_for, to_paper, turned, verdicts
+from coursework.marking.drawn_polygons import (
+    DrawingParts, if_long, met, off_both, scale_for, to_paper, turned, verdicts,
+)
 from coursework.solution import Moving, given, judge, mistake, stable, told_after
 """
 
@@ -122,23 +127,32 @@ class CompiledLinkage:
             f"    helpers=({''.join(f'{n}, ' for n in helpers)}),\n"
             f"    constraints=({''.join(f'{c}, ' for c in conditions)}),\n"
             "    parts=(\n" + "\n".join(parts) + "\n    ),\n"
-            f"    figure=figure,\n    version={linkage.version},\n    symbols={symbols!r},{self._driver()}{drawing}\n)"
+            f"    figure=figure,\n    version={linkage.version},\n    "
+            f"symbols={symbols!r},{self._driver()}{drawing}\n)"
         )
 
     def _driver(self) -> str:
-        """Return the driver as code of a field; nothing where a length drives whose limits nobody knows, or that turns nothing."""
+        """Return the driver as code of a field; nothing where a length drives whose limits nobody knows, or
+        that turns nothing."""
         linkage = self.linkage
         if linkage.drive.kind == "turn":
             effort = ", effort='torque'" if "torque" in self.formulas.quantities else ""
-            return f"\n    driver=Driver({linkage.moved!r}, {linkage.speed!r}, {linkage.acceleration!r}{effort}),"
+            return (
+                f"\n    driver=Driver({linkage.moved!r}, {linkage.speed!r}, "
+                f"{linkage.acceleration!r}{effort}),"
+            )
         if not self._followed:
             return ""
         rates = ", ".join(map(repr, (linkage.moved, *linkage.drive.rates)))
-        return f"\n    driver=Driver({self._followed!r}, poses=poses, jack=Jack({rates}, limits={linkage.drive.limits!r})),"
+        return (
+            f"\n    driver=Driver({self._followed!r}, poses=poses, jack=Jack({rates}, "
+            f"limits={linkage.drive.limits!r})),"
+        )
 
     @property
     def _followed(self) -> str:
-        """The angle by which a scene counts where a length drives: that of a body on a fixed pivot, or the first."""
+        """The angle by which a scene counts where a length drives: that of a body on a fixed pivot, or the
+        first."""
         linkage, formulas = self.linkage, self.formulas
         if linkage.drive.kind == "turn" or not all(linkage.drive.limits) or not linkage.speed:
             return ""
@@ -159,7 +173,8 @@ class CompiledLinkage:
         listed = ", ".join(dict.fromkeys(["driven", *leaves, *limits]))
         return (
             f"def poses({listed}):\n"
-            f"    return {{{moved!r}: length_at(lambda: ({graph}), {angle!r}, {moved!r}, driven, ({', '.join(limits)}), dict({values}))}}"
+            f"    return {{{moved!r}: length_at(lambda: ({graph}), {angle!r}, {moved!r}, driven, "
+            f"({', '.join(limits)}), dict({values}))}}"
         )
 
     def _constraints(self) -> tuple[list[tuple[str, str]], str]:
@@ -183,9 +198,12 @@ class CompiledLinkage:
             results.append(_condition(f"{polygon.kind}_vectors_are_long_enough_to_draw", code))
         asked = [q.name for q in self.questions.questions]
         rates = [
-            n for n in asked
-            if n.startswith(("omega", "alpha")) and n in formulas.quantities and names_in(formulas.quantities[n].code)
-        ]  # fmt: skip
+            n
+            for n in asked
+            if n.startswith(("omega", "alpha"))
+            and n in formulas.quantities
+            and names_in(formulas.quantities[n].code)
+        ]
         if linkage.drive.kind != "turn":  # a length's rate is no angle's
             rates = []
         if varies and linkage.speed and rates:
@@ -218,7 +236,8 @@ class CompiledLinkage:
             graph = "".join(f"{q.name}, " for q in formulas.transitive(self.formulas.followed_turns))
             helpers = (
                 f"def crank_turns({', '.join(leaves)}):\n"
-                f"    return turns_round(lambda: ({graph}), {self.formulas.followed_turns!r}, {linkage.moved!r}, dict({', '.join(f'{n}={n}' for n in leaves)}))"
+                f"    return turns_round(lambda: ({graph}), {self.formulas.followed_turns!r}, "
+                f"{linkage.moved!r}, dict({', '.join(f'{n}={n}' for n in leaves)}))"
             )
         modes = [f"other_assembly_{p}" for p in formulas.modes]
         numbers = [
@@ -243,7 +262,10 @@ class CompiledLinkage:
                 continue
             code = _all_finite(turns)
             name = f"group_{number}_closes"
-            said = f"Message('bodies {{bodies}} meet at {{joints}}', bodies={', '.join(group.bodies)!r}, joints={', '.join(group_joints(group, self.linkage))!r})"
+            said = (
+                f"Message('bodies {{bodies}} meet at {{joints}}', bodies={', '.join(group.bodies)!r}, "
+                f"joints={', '.join(group_joints(group, self.linkage))!r})"
+            )
             yield _condition(name, f"{code} | ~({_all_finite(before)})" if before else code, said)
             before += turns
 
@@ -331,7 +353,8 @@ class CompiledLinkage:
         return "\n\n\n".join([*(p.function() for p in polygons), *(p.judge(given) for p in polygons), stated])
 
     def _motion(self) -> str:
-        """Return the code of the points that move, with their velocities and accelerations where the driver has a speed."""
+        """Return the code of the points that move, with their velocities and accelerations where the driver
+        has a speed."""
         formulas, linkage = self.formulas, self.linkage
         pieces = []
         for point in linkage.points:
@@ -360,7 +383,8 @@ class CompiledLinkage:
                     )
                     raise self.linkage.refused(
                         ("known",),
-                        "a known result is a quantity in its unit; found {name} = {text} {unit}; there is {would}",
+                        "a known result is a quantity in its unit; found {name} = {text} {unit}; there "
+                        "is {would}",
                         name=name,
                         text=text,
                         unit=unit,
@@ -408,7 +432,10 @@ class CompiledLinkage:
         )
         listed = ", ".join(names)
         values = ", ".join(f"{n}={n}" for n in names)
-        return f"def residual({listed}):\n    return closure_gaps(MECHANISM, TRACKS, SIDES, {linkage.moved!r}, {order}, dict({values}))"
+        return (
+            f"def residual({listed}):\n    return closure_gaps(MECHANISM, TRACKS, SIDES, "
+            f"{linkage.moved!r}, {order}, dict({values}))"
+        )
 
     def _mechanism(self) -> str:
         linkage, formulas = self.linkage, self.formulas
@@ -443,7 +470,8 @@ class CompiledLinkage:
         if self._followed:
             pushed = end if jack else formulas.reference[linkage.driver]
         gears = [
-            f"        Gear({g.first!r}, {g.second!r}, {g.carrier!r}, ({_code(g.radii[0])}, {_code(g.radii[1])}), {g.inner}"
+            f"        Gear({g.first!r}, {g.second!r}, {g.carrier!r}, ({_code(g.radii[0])}, "
+            f"{_code(g.radii[1])}), {g.inner}"
             f"{self._centres(g.first, g.second, g.carrier)}),"
             for g in linkage.gears
         ]
@@ -465,8 +493,8 @@ class CompiledLinkage:
 
     @cached_property
     def _starts(self) -> dict[str, str]:
-        """Points at which the frames of the bodies begin for the mechanism, each of one placed before; empty where slides alone hold
-        it."""
+        """Points at which the frames of the bodies begin for the mechanism, each of one placed before; empty
+        where slides alone hold it."""
         linkage = self.linkage
         held, starts = set(linkage.ground), {}
         for name in self.formulas.order:
@@ -484,7 +512,8 @@ class CompiledLinkage:
         return _shifted(slide.through, self.linkage.place(start, slide.on))
 
     def _holder(self, body: str) -> str:
-        """Return the point of a body that the ground or a body placed before it holds; none where slides alone hold it."""
+        """Return the point of a body that the ground or a body placed before it holds; none where slides
+        alone hold it."""
         order = self.formulas.order
         # A jack holds nothing: its length varies.
         before = [b for b in order[: order.index(body)] if b != self.linkage.jack]
@@ -494,7 +523,8 @@ class CompiledLinkage:
     def _tracks(self) -> list[str]:
         linkage = self.linkage
         tracks = [
-            f"SlideTrack({s.at!r}, {s.of!r}, {s.on!r}, {self._through(s)}, {_code(s.along)}, {s.distance!r}), "
+            f"SlideTrack({s.at!r}, {s.of!r}, {s.on!r}, {self._through(s)}, {_code(s.along)}, "
+            f"{s.distance!r}), "
             for s in linkage.slides.values()
         ]
         if linkage.jack:
@@ -505,7 +535,8 @@ class CompiledLinkage:
         return tracks
 
     def _sides(self) -> list[str]:
-        """Return the triangles of the groups that have a side: inner joint, both outer ones, and the quantity of the side."""
+        """Return the triangles of the groups that have a side: inner joint, both outer ones, and the quantity
+        of the side."""
         dyads = [g for g in self.formulas.groups if isinstance(g, Dyad) and g.kind == "RRR"]
         return [f"({d.inner!r}, {d.outer_p!r}, {d.outer_q!r}, 'side_{d.inner}'), " for d in dyads]
 

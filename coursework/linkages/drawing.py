@@ -59,7 +59,8 @@ class FigureWriter:
             first, second = self.linkage.ground[start], self.linkage.ground[end]
             if first.is_origin and second.radius is None and second.y.is_zero and second.x.is_name:
                 self._add(
-                    f'line({self._at(start)}, {self._at(end)}, dashed=True, label=r"{self.formulas.symbol(second.x.code)}")'
+                    f"line({self._at(start)}, {self._at(end)}, dashed=True, "
+                    f'label=r"{self.formulas.symbol(second.x.code)}")'
                 )
 
     def _body(self, body: str) -> None:
@@ -107,7 +108,8 @@ class FigureWriter:
         self._add(f"link({', '.join(map(self._at, ordered))})")
 
     def _is_end(self, point: str, body: str) -> bool:
-        """Return whether a point that is no pin is drawn as the end of its body: a tracer point, or one that slides."""
+        """Return whether a point that is no pin is drawn as the end of its body: a tracer point, or one that
+        slides."""
         return (
             body not in self._blocks
             and len(self.linkage.bodies[body].points) > 1
@@ -115,7 +117,8 @@ class FigureWriter:
         )
 
     def _guide(self, body: str, points: list[str]) -> None:
-        """Draw a slotted body: its slot as far as the block and its own points go, and bars to points off it."""
+        """Draw a slotted body: its slot as far as the block and its own points go, and bars to points off
+        it."""
         slide = next(s for s in self.linkage.slides.values() if s.on == body)
         unit = f"polar(1, {(self.formulas.heading(body) + Heading.of(slide.along.code)).code})"
         start = self._through(slide)

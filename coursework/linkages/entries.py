@@ -49,7 +49,8 @@ class GivenEntry:
 
 @dataclass(frozen=True)
 class BodyEntry:
-    """Moving body: its points in its own frame, by name; the quantity or the constant that turns it, if the file states one."""
+    """Moving body: its points in its own frame, by name; the quantity or the constant that turns it, if the
+    file states one."""
 
     name: str
     points: Mapping[str, Place]
@@ -59,8 +60,8 @@ class BodyEntry:
 
 @dataclass(frozen=True)
 class SlideEntry:
-    """Point of a body that slides on a line of another: the line's point and direction in the guide's frame, the name of the
-    distance along it."""
+    """Point of a body that slides on a line of another: the line's point and direction in the guide's frame,
+    the name of the distance along it."""
 
     at: str
     of: str
@@ -91,10 +92,11 @@ class GearEntry:
 class DriverEntry:
     """Driver of a mechanism.
 
-    ``kind``: a ``turn`` of the body about a point of the ground, a ``slide`` of it on the ground, or a ``jack`` whose cylinder and rod
-    are pinned to other bodies; ``moved`` is the quantity that says how far, an angle or a length. The body of a jack holds its two
-    pins, the second at the distance ``moved`` from the first; ``rod`` is the name of the half that comes out. ``limits`` are the
-    quantities between which a length goes.
+    ``kind``: a ``turn`` of the body about a point of the ground, a ``slide`` of it on the ground, or a
+    ``jack`` whose cylinder and rod are pinned to other bodies; ``moved`` is the quantity that says how far,
+    an angle or a length. The body of a jack holds its two pins, the second at the distance ``moved`` from the
+    first; ``rod`` is the name of the half that comes out. ``limits`` are the quantities between which a
+    length goes.
     """
 
     kind: str
@@ -113,8 +115,8 @@ class DriverEntry:
 
 @dataclass(frozen=True)
 class AssemblyEntry:
-    """Ways to assemble a group: ``left`` and ``right`` of a line between two points, or ``ahead`` and ``behind`` on a slide; one, or
-    those among which a variant draws."""
+    """Ways to assemble a group: ``left`` and ``right`` of a line between two points, or ``ahead`` and
+    ``behind`` on a slide; one, or those among which a variant draws."""
 
     ways: tuple[str, ...]
     start: str = ""
@@ -127,7 +129,8 @@ class AssemblyEntry:
 
 @dataclass(frozen=True)
 class NearEntry:
-    """Start of Newton's method: places of points, mm, with the driver at an angle, degrees, or at a length, mm."""
+    """Start of Newton's method: places of points, mm, with the driver at an angle, degrees, or at a length,
+    mm."""
 
     places: Mapping[str, complex]
     driver: float
@@ -218,7 +221,8 @@ class LinkageFile:
 
     @property
     def counts(self) -> tuple[int, int, int]:
-        """Moving bodies, pins and slides, and contacts of teeth; a jack is two bodies and the slide between them."""
+        """Moving bodies, pins and slides, and contacts of teeth; a jack is two bodies and the slide between
+        them."""
         pins = sum(len(bodies) - 1 for bodies in self.pins.values())
         jack = int(bool(self.jack))
         return len(self.bodies) + jack, pins + len(self.slides) + jack, len(self.gears)

@@ -1,7 +1,9 @@
-"""Loops that the numeric core knows as a whole: near dead centres and change points it keeps digits that points with rounded coordinates lose.
+"""Loops that the numeric core knows as a whole: near dead centres and change points it keeps digits that
+points with rounded coordinates lose.
 
-A pair of bars between a point that turns about a fixed pivot and another fixed pivot is a four-bar linkage; a rod from such a point to a
-fixed guide is a slider-crank. Their closed forms take lengths and the crank's angle as they are given.
+A pair of bars between a point that turns about a fixed pivot and another fixed pivot is a four-bar linkage; a
+rod from such a point to a fixed guide is a slider-crank. Their closed forms take lengths and the crank's
+angle as they are given.
 """
 
 from __future__ import annotations
@@ -66,13 +68,17 @@ def keep_digits_of_bars(writer: FormulaWriter, group: Dyad, to_p: Arm, to_q: Arm
         lengths = [length.code for length in (arm.length, to_coupler.length, to_rocker.length)]
         loop = writer.hide(
             f"_loop_{B}",
-            f"FourBar(abs({frame.complex}), {', '.join(lengths)}, {side}).at(Degrees.between(_frame_{B}, {_direction(arm)}))",
+            f"FourBar(abs({frame.complex}), {', '.join(lengths)}, "
+            f"{side}).at(Degrees.between(_frame_{B}, {_direction(arm)}))",
         )
         _turn(writer, coupler, to_coupler, f"from_radians({loop}.coupler_angle) + _frame_{B}")
         _turn(writer, rocker, to_rocker, f"from_radians({loop}.rocker_angle) + _frame_{B}")
         if sign > 0:
             _stable(writer, f"psi_{B}", f"from_radians({loop}.corner)")
-        place = f"{writer.complex(end)} + polar({to_rocker.length.code}, from_radians({loop}.rocker_angle) + _frame_{B})"
+        place = (
+            f"{writer.complex(end)} + polar({to_rocker.length.code}, from_radians({loop}.rocker_angle) + "
+            f"_frame_{B})"
+        )
         writer.quantities[f"_{B}"] = replace(writer.quantities[f"_{B}"], code=place)
         rate, gain = writer.omega(body), writer.alpha(body)
         for turned, ratio in ((coupler, "coupler"), (rocker, "rocker")):
@@ -135,7 +141,8 @@ def keep_digits_of_slider(
 
 
 def _crank(writer: FormulaWriter, point: str) -> tuple[str, str, Arm] | None:
-    """Return the body that carries a point about a fixed pivot, the pivot, and the vector between them; None for any other point."""
+    """Return the body that carries a point about a fixed pivot, the pivot, and the vector between them; None
+    for any other point."""
     if point in writer.linkage.ground:
         return None
     body, pivot = writer.carrier(point)

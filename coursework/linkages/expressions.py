@@ -31,8 +31,12 @@ _SHARE = re.compile(
 )  #: the last factor of what may be a unit, or a unit and a quantity
 _OPERATORS: Mapping[type, str] = {ast.Add: "+", ast.Sub: "-", ast.Mult: "*", ast.Div: "/", ast.Pow: "**"}
 _ARITHMETIC: Mapping[type, Callable[[float, float], float]] = {
-    ast.Add: operator.add, ast.Sub: operator.sub, ast.Mult: operator.mul, ast.Div: operator.truediv, ast.Pow: math.pow,
-}  # fmt: skip
+    ast.Add: operator.add,
+    ast.Sub: operator.sub,
+    ast.Mult: operator.mul,
+    ast.Div: operator.truediv,
+    ast.Pow: math.pow,
+}
 _COMPARISONS: Mapping[type, str] = {ast.Lt: "<", ast.LtE: "<=", ast.Gt: ">", ast.GtE: ">="}
 
 
@@ -98,7 +102,8 @@ def _value(code: str) -> str:
 
 
 def _refuse_comma(text: object) -> None:
-    """Refuse a decimal comma, which TOML and expressions do not have; between brackets a comma parts two values."""
+    """Refuse a decimal comma, which TOML and expressions do not have; between brackets a comma parts two
+    values."""
     if re.search(r"\d,\d", str(text)) and "(" not in str(text):
         right = re.sub(r"(\d),(\d)", r"\1.\2", str(text))
         raise WrongValue(
@@ -173,7 +178,8 @@ def canonical(unit: Unit) -> str:
 
 @dataclass(frozen=True)
 class _Read:
-    """Piece of an expression that was read: code over quantities in their canonical units, and the unit of its value."""
+    """Piece of an expression that was read: code over quantities in their canonical units, and the unit of
+    its value."""
 
     code: str
     names: tuple[str, ...] = ()
@@ -326,7 +332,8 @@ class ExpressionReader:
                 )
 
     def _unit_beside(self, text: str) -> str:
-        """Return what of a text is the unit of the number before it: ``mm`` of ``mm*k``, where k is a quantity."""
+        """Return what of a text is the unit of the number before it: ``mm`` of ``mm*k``, where k is a
+        quantity."""
         named = any(name in self.units for name in re.findall(r"[A-Za-z]\w*", text)[1:])
         unit = find_unit(text)
         if unit is not None and (not named or canonical(unit) in CANONICAL):

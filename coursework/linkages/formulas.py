@@ -1,4 +1,5 @@
-"""Quantities of a mechanism, group by group: the formula that a worked solution prints, and the closed form that keeps its digits."""
+"""Quantities of a mechanism, group by group: the formula that a worked solution prints, and the closed form
+that keeps its digits."""
 
 from __future__ import annotations
 
@@ -45,7 +46,8 @@ class FormulaWriter(HigherGroupWriter):
                 self._large(group)
 
     def _mode(self, point: str, default: str, ends: tuple[str, str] | None) -> str:
-        """Return the quantity that is +1 or -1 by the way in which a group is assembled; ``ends`` of the line whose left is +1."""
+        """Return the quantity that is +1 or -1 by the way in which a group is assembled; ``ends`` of the line
+        whose left is +1."""
         linkage = self.linkage
         entry = linkage.assembly.get(point)
         if entry is None:
@@ -54,7 +56,8 @@ class FormulaWriter(HigherGroupWriter):
                 first, last = ends
                 raise linkage.refused(
                     ("assembly",),
-                    '{point} can be assembled in two ways: [assembly], then {point} = "left of {first} -> {last}"',
+                    '{point} can be assembled in two ways: [assembly], then {point} = "left of {first} '
+                    '-> {last}"',
                     point=point,
                     first=first,
                     last=last,
@@ -121,25 +124,45 @@ class FormulaWriter(HigherGroupWriter):
         )
         corner = self.write(
             f"psi_{B}",
-            f"acos(({distance}**2 + {first.factor}**2 - {second.factor}**2) / (2 * {distance} * {first.factor}))",
-            "deg", "corner", rf"\psi_{{{B}}}", words=words,
-            stable=f"abs(wrap(angle({point} - {self.complex(P)}) - angle({self.complex(Q)} - {self.complex(P)})))",
-        )  # fmt: skip
+            f"acos(({distance}**2 + {first.factor}**2 - {second.factor}**2) / (2 * {distance} * "
+            f"{first.factor}))",
+            "deg",
+            "corner",
+            rf"\psi_{{{B}}}",
+            words=words,
+            stable=f"abs(wrap(angle({point} - {self.complex(P)}) - angle({self.complex(Q)} - "
+            f"{self.complex(P)})))",
+        )
         offset = to_p.heading - self.heading(p)
         self._write_turn(p, f"{line} + {side} * {corner}", to_p, offset, P, point, "turn_by_corner", words)
         self._finish_rod(p, P)
         away = self.at(B) - self.at(Q)
         self._write_turn(
-            q, f"atan2({away.y.code}, {away.x.code})", to_q, to_q.heading - self.heading(q), Q, point, "turn_by_ends", words,
+            q,
+            f"atan2({away.y.code}, {away.x.code})",
+            to_q,
+            to_q.heading - self.heading(q),
+            Q,
+            point,
+            "turn_by_ends",
+            words,
             wrapped=True,
-        )  # fmt: skip
+        )
         self._finish_rod(q, Q)
         self._rates_rrr(group, to_p, to_q, words)
 
     def _write_turn(
-        self, body: str, code: str, arm: Arm, offset: Heading, start: str, end: str, step: str, words: Mapping[str, str],
+        self,
+        body: str,
+        code: str,
+        arm: Arm,
+        offset: Heading,
+        start: str,
+        end: str,
+        step: str,
+        words: Mapping[str, str],
         wrapped: bool = False,
-    ) -> None:  # fmt: skip
+    ) -> None:
         """Write the angle of a body from the direction of an arm on it, which ends at a hidden point."""
         back = Heading((), 180.0 if arm.sign < 0 else 0.0) + -offset
         whole = code if wrapped and back.vanishes else f"wrap({back.after(code)})"
@@ -161,7 +184,8 @@ class FormulaWriter(HigherGroupWriter):
         jack = "_jack" if self.linkage.jack in group.bodies else ""
 
         def apart(kind: str) -> tuple[Sum, Sum]:
-            """Return what the rates of one end have more than those of the other, along ``q`` and along ``p``."""
+            """Return what the rates of one end have more than those of the other, along ``q`` and along
+            ``p``."""
             first, last = self._motion(P, kind), self._motion(Q, kind)
             results = []
             for gap, heading, sign in ((last - first, to_q.heading, 1), (first - last, to_p.heading, -1)):
@@ -173,9 +197,13 @@ class FormulaWriter(HigherGroupWriter):
             (p, q), apart("v"), (below_p, below_q), (q, p), (0, 1), strict=True
         ):
             self.write(
-                self.omega(body), over(own, below), "rad/s", f"omega_rrr{jack}",
-                words={**words, "body": body, "other": start}, stable=f"{rates}[{index}][0]",
-            )  # fmt: skip
+                self.omega(body),
+                over(own, below),
+                "rad/s",
+                f"omega_rrr{jack}",
+                words={**words, "body": body, "other": start},
+                stable=f"{rates}[{index}][0]",
+            )
         a_p, a_q = self._own(P, p, to_p, "a"), self._own(Q, q, to_q, "a")
         self.hide(
             gains, f"dyads.rrr_rates({arms}, ({v_p.complex}, {a_p.complex}), ({v_q.complex}, {a_q.complex}))"
@@ -187,19 +215,26 @@ class FormulaWriter(HigherGroupWriter):
         self.sines[B] = between.sin
         self.mistakes.append(
             UsualMistake(
-                f"normal_terms_forgotten_{B}", (self.alpha(p), self.alpha(q)),
+                f"normal_terms_forgotten_{B}",
+                (self.alpha(p), self.alpha(q)),
                 (over(bare_p, below_p), over(bare_q, below_q)),
-                "normal_terms_forgotten", words,
+                "normal_terms_forgotten",
+                words,
             )
-        )  # fmt: skip
+        )
         for body, above, below, other, index in ((p, above_p, below_p, q, 0), (q, above_q, below_q, p, 1)):
             self.write(
-                self.alpha(body), over(above, below), "rad/s^2", f"alpha_rrr{jack}",
-                words={**words, "body": body, "other": other}, stable=f"{gains}[{index}][1]",
-            )  # fmt: skip
+                self.alpha(body),
+                over(above, below),
+                "rad/s^2",
+                f"alpha_rrr{jack}",
+                words={**words, "body": body, "other": other},
+                stable=f"{gains}[{index}][1]",
+            )
 
     def _own(self, start: str, body: str, arm: Arm, kind: str) -> Plane:
-        """Return the velocity, or the acceleration, that the end of an arm has without the turning of its body."""
+        """Return the velocity, or the acceleration, that the end of an arm has without the turning of its
+        body."""
         return self._motion(start, kind) + self.growth(body, arm, kind)
 
     def _rrp(self, group: Dyad) -> None:
@@ -225,15 +260,27 @@ class FormulaWriter(HigherGroupWriter):
         ahead = rise.along(heading)
         run = f"{ahead.code} + {side} * {reach}" if not ahead.vanishes else f"{side} * {reach}"
         distance = self.write(
-            slide.distance, run if sign > 0 else f"-({run})", "mm", "slide_rrp", self.slide_symbol(slide), words=words,
+            slide.distance,
+            run if sign > 0 else f"-({run})",
+            "mm",
+            "slide_rrp",
+            self.slide_symbol(slide),
+            words=words,
             stable=f"{'' if sign > 0 else '-'}(({point} - {start}) * np.conj({unit})).real",
-        )  # fmt: skip
+        )
         self.write_end(B, track.moved(base, distance), words, point)
         away = self.at(B) - self.at(P)
         self._write_turn(
-            p, f"atan2({away.y.code}, {away.x.code})", arm, arm.heading - self.heading(p), P, point, "turn_by_ends",
-            {**words, "Q": P}, wrapped=True,
-        )  # fmt: skip
+            p,
+            f"atan2({away.y.code}, {away.x.code})",
+            arm,
+            arm.heading - self.heading(p),
+            P,
+            point,
+            "turn_by_ends",
+            {**words, "Q": P},
+            wrapped=True,
+        )
         self._finish_rod(p, P)
         self._finish_rod(q, B)
         self._rates_rrp(words, arm, track, distance)
@@ -294,11 +341,13 @@ class FormulaWriter(HigherGroupWriter):
         bare = (a_P - a_c).along(heading) + grown.x - lever.times(self.alpha(p), between.sin)
         self.mistakes.append(
             UsualMistake(
-                f"normal_terms_forgotten_{B}", (self.alpha(p), gain),
+                f"normal_terms_forgotten_{B}",
+                (self.alpha(p), gain),
                 (over(across + coriolis, below), bare.times(sign=sign).code),
-                "normal_terms_forgotten", words,
+                "normal_terms_forgotten",
+                words,
             )
-        )  # fmt: skip
+        )
         if not coriolis.vanishes:
             wrong = over(across + lever.times(square, between.sin), below)
             self.mistakes.append(
@@ -334,16 +383,25 @@ class FormulaWriter(HigherGroupWriter):
         run = f"{side} * {reach}"
         rest = "" if ahead.vanishes else f" - {ahead.factor}"
         distance = self.write(
-            slide.distance, run + rest, "mm", "slide_rpr_offset" if offset else "slide_rpr", self.slide_symbol(slide), words=words,
+            slide.distance,
+            run + rest,
+            "mm",
+            "slide_rpr_offset" if offset else "slide_rpr",
+            self.slide_symbol(slide),
+            words=words,
             stable=f"{pair}[1]{rest}",
-        )  # fmt: skip
+        )
         whole = Sum.of(distance) + ahead
         turn = f"{line} - atan2({offset}, {whole.code})" if offset else f"{line} + 90 * (1 - {side})"
         back = -direction
         self.write(
-            self.turns[q], f"wrap({back.after(turn)})", "deg", "turn_rpr_offset" if offset else "turn_rpr", words={**words, "body": q},
+            self.turns[q],
+            f"wrap({back.after(turn)})",
+            "deg",
+            "turn_rpr_offset" if offset else "turn_rpr",
+            words={**words, "body": q},
             stable=f"wrap({back.after(f'angle({pair}[0])')})",
-        )  # fmt: skip
+        )
         self._finish_rod(q, Q)
         self._finish_rod(p, P)
         heading = self.heading(q) + direction
@@ -374,7 +432,8 @@ class FormulaWriter(HigherGroupWriter):
         self.write(gain, along.code, "mm/s^2", f"slide_gain_rpr{moved}", dotted(symbol, 2), words=words)
 
     def _two_slides(self, group: Dyad) -> None:
-        """Write a point that is on two lines: the pin of two blocks, or a placed pin that two slides reach."""
+        """Write a point that is on two lines: the pin of two blocks, or a placed pin that two slides
+        reach."""
         if group.kind == "PRP":
             B = group.inner
             one, other = group.outer_p, group.outer_q

@@ -16,8 +16,9 @@ Joint = str | SlideEntry  #: a point that is a pin, or a slide
 class Dyad:
     """Group of two bodies.
 
-    ``kind``: RRR, RRP, RPR, PRP or RPP, its joints from the outer one of ``p`` over the inner one to the outer one of ``q``. In RRP and RPP
-    the slide on what is placed is that of ``q``; in RPR ``p`` is the block.
+    ``kind``: RRR, RRP, RPR, PRP or RPP, its joints from the outer one of ``p`` over the inner one to the
+    outer one of ``q``. In RRP and RPP the slide on what is placed is that of ``q``; in RPR ``p`` is the
+    block.
     """
 
     kind: str
@@ -119,7 +120,8 @@ def _is_ready(wheel: Wheel, placed: Sequence[str]) -> bool:
 
 
 def _wheels(linkage: LinkageFile) -> dict[str, Wheel]:
-    """Return the bodies that gears turn: of each gear the one that neither drives nor is turned by an earlier gear."""
+    """Return the bodies that gears turn: of each gear the one that neither drives nor is turned by an earlier
+    gear."""
     results: dict[str, Wheel] = {}
     for gear in linkage.gears:
         able = [
@@ -146,7 +148,8 @@ def _wheels(linkage: LinkageFile) -> dict[str, Wheel]:
 
 
 def _numbers(linkage: LinkageFile, wheels: dict[str, Wheel]) -> dict[str, int]:
-    """Return the bodies' numbers in a joint graph, the frame 1; a wheel counts as its carrier, with which it is placed."""
+    """Return the bodies' numbers in a joint graph, the frame 1; a wheel counts as its carrier, with which it
+    is placed."""
     numbers = {GROUND: 1}
     for name in [linkage.driver, *linkage.bodies]:
         if name not in wheels and name not in numbers:

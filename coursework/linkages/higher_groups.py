@@ -23,7 +23,8 @@ class HigherGroupWriter(LoopWriter):
         if linkage.near is None:
             raise linkage.refused(
                 ("assembly",) if linkage.assembly else ("bodies", group.bodies[0]),
-                'bodies {found} are one group of class {value}: say from where Newton\'s method starts: near = {{ {driver}, E = ["120 mm", "80 mm"], … }}',
+                "bodies {found} are one group of class {value}: say from where Newton's method "
+                'starts: near = {{ {driver}, E = ["120 mm", "80 mm"], … }}',
                 found=", ".join(group.bodies),
                 value="I" * group.rank if group.rank < 4 else group.rank,
                 driver='angle = "60 deg"' if linkage.drive.kind == "turn" else 'length = "60 mm"',
@@ -45,7 +46,8 @@ class HigherGroupWriter(LoopWriter):
         self.followed[solved] = tuple(q.name for q in needed)
         listed = "".join(f"({', '.join(map(vector_code, loop))},), " for loop in loops)
         self.constants[chain] = (
-            f"LargeGroup(({listed}), {tuple(unknowns)!r}, {near!r}, {linkage.moved!r}, {linkage.near.driver!r}, {self._step!r}, "
+            f"LargeGroup(({listed}), {tuple(unknowns)!r}, {near!r}, {linkage.moved!r}, "
+            f"{linkage.near.driver!r}, {self._step!r}, "
             f"lambda: ({''.join(f'{q.name}, ' for q in needed)}))"
         )
         arguments = dict.fromkeys([linkage.moved, *leaves, *(n for n in known if n not in moving)])
@@ -92,7 +94,8 @@ class HigherGroupWriter(LoopWriter):
                 self.write(name, code, f"mm/s{power}", f"{stem}_large", symbol, words=told, silent=True)
 
     def _loops(self, group: HigherGroup) -> tuple[list[Chain], list[str]]:
-        """Return the independent loops of a group, and the names of the coordinates of placed points in them."""
+        """Return the independent loops of a group, and the names of the coordinates of placed points in
+        them."""
         slides = self.linkage.slides
         joints: dict[str, list[str]] = {}
         for point in self.linkage.points:
@@ -175,8 +178,8 @@ class HigherGroupWriter(LoopWriter):
     def _near_angle(
         self, body: str, places: Mapping[str, complex], values: Mapping[str, float]
     ) -> float | None:
-        """Return the angle of a body, radians, from the rough places of two of its points, or of its origin and a point that slides on
-        it; None without."""
+        """Return the angle of a body, radians, from the rough places of two of its points, or of its origin
+        and a point that slides on it; None without."""
         linkage = self.linkage
         known = [p for p in linkage.bodies[body].points if p in places]
         if len(known) > 1:
@@ -246,7 +249,8 @@ class HigherGroupWriter(LoopWriter):
 
     @property
     def _step(self) -> float:
-        """From one position of the driver to the next: degrees of an angle, or a part of the longest length, mm."""
+        """From one position of the driver to the next: degrees of an angle, or a part of the longest length,
+        mm."""
         if self.linkage.drive.kind == "turn":
             return 6.0
         return 0.02 * max(abs(middle(e)) for e in self.linkage.given.values() if e.unit == "mm")

@@ -41,7 +41,8 @@ class JointReader(TableReader):
             if not _BODY.match(name) or name == GROUND:
                 raise self.refused(
                     at,
-                    "a body is called by a number from 2 on, or a small letter; found {name!r} (the ground is 1)",
+                    "a body is called by a number from 2 on, or a small letter; found {name!r} (the "
+                    "ground is 1)",
                     name=name,
                 )
             if not isinstance(value, Mapping):
@@ -59,8 +60,11 @@ class JointReader(TableReader):
                 self._check_point(at, str(origin))
                 if str(origin) in points:
                     raise self.refused(
-                        at, "the frame of body {name} begins at {point}, which has no other place in it", name=name, point=origin
-                    )  # fmt: skip
+                        at,
+                        "the frame of body {name} begins at {point}, which has no other place in it",
+                        name=name,
+                        point=origin,
+                    )
                 points = {str(origin): Place(), **points}
             angle = value.get("angle")
             results[name] = BodyEntry(
@@ -95,7 +99,8 @@ class JointReader(TableReader):
         jacks: Sequence[DriverEntry],
         given: Mapping[str, GivenEntry],
     ) -> DriverEntry:
-        """Return what drives: a body that a given angle turns, a slide of a given distance, or a jack of a given length."""
+        """Return what drives: a body that a given angle turns, a slide of a given distance, or a jack of a
+        given length."""
         turned = {b.name: b.angle for b in bodies.values() if b.angle is not None and not b.angle.is_number}
         driven = [DriverEntry("turn", name, angle.code) for name, angle in turned.items()]
         places = [("bodies", name) for name in turned]
@@ -115,7 +120,8 @@ class JointReader(TableReader):
         if len(driven) > 1:
             raise self.refused(
                 places[1],
-                "two bodies are driven, {name} and {name_2}; one angle or length drives, those of the others follow",
+                "two bodies are driven, {name} and {name_2}; one angle or length drives, those of the "
+                "others follow",
                 name=driven[0].body,
                 name_2=driven[1].body,
             )
@@ -131,7 +137,8 @@ class JointReader(TableReader):
     def _limits(
         self, at: Sequence[str | int], length: str, given: Mapping[str, GivenEntry]
     ) -> tuple[str, str]:
-        """Return the quantities between which a driven length goes: those that the file states, or the ends of its own range."""
+        """Return the quantities between which a driven length goes: those that the file states, or the ends
+        of its own range."""
         table = self._table(*at)
         stated = table.get("limits")
         if stated is None:
@@ -171,7 +178,8 @@ class JointReader(TableReader):
             if name in bodies or rod in bodies or rod == name or not (_BODY.match(name) and _BODY.match(rod)):
                 raise self.refused(
                     at,
-                    "cylinder and rod of a jack are two bodies with names of their own; found {name!r} and {rod!r}",
+                    "cylinder and rod of a jack are two bodies with names of their own; found {name!r} "
+                    "and {rod!r}",
                     name=name,
                     rod=rod,
                 )
@@ -184,7 +192,8 @@ class JointReader(TableReader):
             if length not in given or given[length].unit != "mm":
                 raise self.refused(
                     at,
-                    "the length of a jack is a given quantity, which drives: [given], then {length} = {example}",
+                    "the length of a jack is a given quantity, which drives: [given], then {length} = "
+                    "{example}",
                     length=length,
                     example='{ from = "300 mm", to = "400 mm" }',
                 )
@@ -202,7 +211,8 @@ class JointReader(TableReader):
             if not isinstance(value, Mapping):
                 raise self.refused(
                     at,
-                    'a slide is {point} = {{ of = "4", on = "ground", through = "C", along = "0 deg" }}; found {value!r}',
+                    'a slide is {point} = {{ of = "4", on = "ground", through = "C", along = "0 deg" '
+                    "}}; found {value!r}",
                     point=point,
                     value=value,
                 )
@@ -225,7 +235,8 @@ class JointReader(TableReader):
             if point in (ground if on == GROUND else bodies[on].points):
                 raise self.refused(
                     at,
-                    "{point} is a point of body {on} itself, where it cannot slide; another body holds it there",
+                    "{point} is a point of body {on} itself, where it cannot slide; another body holds "
+                    "it there",
                     point=point,
                     on=on,
                 )

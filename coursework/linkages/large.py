@@ -1,4 +1,5 @@
-"""Group of class III or higher at work: Newton's method on its loops, from one position of the driver to the next."""
+"""Group of class III or higher at work: Newton's method on its loops, from one position of the driver to the
+next."""
 
 from __future__ import annotations
 
@@ -46,7 +47,8 @@ class LargeGroup:
     step
         Degrees or mm of the driver from one position to the next, over which Newton's method converges.
     functions
-        A function that returns those functions of the module that compute the coordinates of the placed points.
+        A function that returns those functions of the module that compute the coordinates of the placed
+        points.
     """
 
     def __init__(
@@ -76,7 +78,8 @@ class LargeGroup:
         Parameters
         ----------
         given
-            Quantities that place the mechanism: the driver's angle in degrees, lengths in mm; scalars or arrays that broadcast.
+            Quantities that place the mechanism: the driver's angle in degrees, lengths in mm; scalars or
+            arrays that broadcast.
 
         Returns
         -------
@@ -111,7 +114,8 @@ class LargeGroup:
         return start
 
     def _passed_each(self, given: Mapping[str, Any], way: np.ndarray) -> Mapping[str, Any]:
-        """Return the poses at the last whole step before each of several positions; NaN beyond a place that cannot be passed."""
+        """Return the poses at the last whole step before each of several positions; NaN beyond a place that
+        cannot be passed."""
         steps = np.where(np.isfinite(way), np.trunc(way / self.step), 0).astype(int)
         poses: dict[int, Mapping[str, Any]] = {}
         for sign in (1, -1):
@@ -127,7 +131,8 @@ class LargeGroup:
         }
 
     def _passed(self, given: Mapping[str, Any], way: float) -> Mapping[str, Any]:
-        """Return the pose at the last whole step before a position; steps of one set of lengths are remembered."""
+        """Return the pose at the last whole step before a position; steps of one set of lengths are
+        remembered."""
         key = tuple((n, float(v)) for n, v in sorted(given.items()) if n != self.driver)
         if len(self._ways) > _MOST_WAYS:
             self._ways.clear()
@@ -142,7 +147,8 @@ class LargeGroup:
                     poses[sign * number] = self.chain.solve(known, before).values
                 except CannotAssemble as fault:
                     raise CannotAssemble(
-                        "followed from near, {driver} = {start:.6g}, the group cannot pass {driver} = {place:.6g}: {problem}",
+                        "followed from near, {driver} = {start:.6g}, the group cannot pass {driver} = "
+                        "{place:.6g}: {problem}",
                         driver=self.driver,
                         start=self.near_driver,
                         place=place,

@@ -1,4 +1,5 @@
-"""Faults of a mechanism that its file states in order: what does not hold together, or moves otherwise than by one driver."""
+"""Faults of a mechanism that its file states in order: what does not hold together, or moves otherwise than
+by one driver."""
 
 from __future__ import annotations
 
@@ -33,7 +34,8 @@ def linkage_faults(linkage: LinkageFile) -> Iterator[BadInput]:
         points = ", ".join(linkage.bodies[name].points)
         yield linkage.refused(
             ("bodies", name),
-            "body {name} is in the air: it shares none of its points {points} with another body, and does not slide",
+            "body {name} is in the air: it shares none of its points {points} with another body, and "
+            "does not slide",
             name=name,
             points=points,
         )

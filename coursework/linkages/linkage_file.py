@@ -1,4 +1,5 @@
-"""Reader of a mechanism's file: its tables as bodies, joints, given quantities and questions, each fault with its line."""
+"""Reader of a mechanism's file: its tables as bodies, joints, given quantities and questions, each fault with
+its line."""
 
 from __future__ import annotations
 
@@ -39,8 +40,19 @@ KEYS = (
     "known",
 )
 ASKED = (
-    "mobility", "class", "positions", "equations", "velocities", "accelerations", "polygon", "instant_centres", "advantage", "torque", "thrust", "points",
-)  # fmt: skip
+    "mobility",
+    "class",
+    "positions",
+    "equations",
+    "velocities",
+    "accelerations",
+    "polygon",
+    "instant_centres",
+    "advantage",
+    "torque",
+    "thrust",
+    "points",
+)
 _MOST_CHARACTERS = 60_000  #: of a file
 _MOST_POINTS = 1000  #: that a question is worth
 _SIDE = re.compile(r"\s*(left|right)\s+of\s+([A-Z]\d*)\s*->\s*([A-Z]\d*)\s*\Z")
@@ -108,16 +120,31 @@ class _LinkageReader(JointReader):
         assembly, near = self._assembly(drive)
         gears, loads = self._gears(bodies), self._loads(bodies)
         linkage = LinkageFile(
-            self.path, self.source, title, self._whole("version", 1), self._ordered(given, drive), ground, bodies, slides,
-            gears, assembly, near, self._ask(), loads, self._required(), drive,
-            self.path.stem, self._known(),
-        )  # fmt: skip
+            self.path,
+            self.source,
+            title,
+            self._whole("version", 1),
+            self._ordered(given, drive),
+            ground,
+            bodies,
+            slides,
+            gears,
+            assembly,
+            near,
+            self._ask(),
+            loads,
+            self._required(),
+            drive,
+            self.path.stem,
+            self._known(),
+        )
         for fault in linkage_faults(linkage):
             raise fault
         return linkage
 
     def _ordered(self, given: Mapping[str, GivenEntry], drive: DriverEntry) -> Mapping[str, GivenEntry]:
-        """Return all given quantities as the sheet lists them: what places the joints, the driver, what acts on it."""
+        """Return all given quantities as the sheet lists them: what places the joints, the driver, what acts
+        on it."""
         driver = {drive.moved, *drive.rates}
         first = {**given, **self.constants}
         ranks = {n: 2 if e.unit in ("N", "N*m") else int(n in driver) for n, e in first.items()}
@@ -164,7 +191,8 @@ class _LinkageReader(JointReader):
             return "ahead" if match[1] == "ahead of" else "behind", match[2], ""
         raise self.refused(
             at,
-            'a way to assemble is "left of A -> C", "right of A -> C", "ahead of A" or "behind A"; found {text!r}',
+            'a way to assemble is "left of A -> C", "right of A -> C", "ahead of A" or "behind A"; '
+            "found {text!r}",
             text=text,
         )
 

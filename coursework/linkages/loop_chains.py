@@ -76,8 +76,8 @@ class LoopWriter(PointWriter):
         return (slide.distance, turn, "1", "0.0") if frame == "0.0" else (slide.distance, frame, "1", turn)
 
     def _slid(self, slide: SlideEntry, way: Callable[[str], Chain] | None = None) -> Chain:
-        """Return the vectors from the origin to a point that slides on a placed body; ``way`` returns those to a placed point, by
-        default along bars."""
+        """Return the vectors from the origin to a point that slides on a placed body; ``way`` returns those
+        to a placed point, by default along bars."""
         way = way or self._way
         if slide.through_name:
             return [*way(slide.through_name), self._along(slide)]
@@ -100,7 +100,8 @@ class LoopWriter(PointWriter):
         return [*back(ways[0]), *ways[1]]
 
     def _start_of(self, slide: SlideEntry, origin: str) -> Chain | None:
-        """Return the vectors from a point of the guide, or from the ground's origin, to the start of the distance along a slide."""
+        """Return the vectors from a point of the guide, or from the ground's origin, to the start of the
+        distance along a slide."""
         if slide.through_name:
             return self._steps(slide.on, origin, slide.through_name) if slide.on != GROUND else []
         place = local_plane(slide.through)
@@ -122,7 +123,8 @@ class LoopWriter(PointWriter):
         ]
 
     def closure(self, group: Group) -> Chain | None:
-        """Return the loop that a pair of bodies closes, as vectors that add up to nothing; None for a group whose vectors have no names."""
+        """Return the loop that a pair of bodies closes, as vectors that add up to nothing; None for a group
+        whose vectors have no names."""
         if not isinstance(group, Dyad):
             return None
         inner, first, last = group.inner, group.outer_p, group.outer_q

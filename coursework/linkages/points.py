@@ -1,7 +1,7 @@
 """Points of a mechanism: where they lie, how they move, and the quantities that say so.
 
-Coordinates of points in mm, angles in degrees; ``xB`` and ``yB``, ``v_B_x`` and ``a_B_x`` are quantities, ``_B`` is the point as a
-complex number.
+Coordinates of points in mm, angles in degrees; ``xB`` and ``yB``, ``v_B_x`` and ``a_B_x`` are quantities,
+``_B`` is the point as a complex number.
 """
 
 from __future__ import annotations
@@ -25,8 +25,10 @@ from coursework.model import symbol_of
 Chain: TypeAlias = list[tuple[str, str, str, str]]  #: vectors as code: length, angle, sign, turn
 
 _WORDS = (
-    "sin cos tan sqrt abs atan2 acos asin polar angle wrap np dyads dict max complex Figure line link ground_pivot pin point slot_link "
-    "slider rail circle angle_mark Side normal tangential turning polygon_of_velocities polygon_of_accelerations FourBar SliderCrank "
+    "sin cos tan sqrt abs atan2 acos asin polar angle wrap np dyads dict max complex Figure line link "
+    "ground_pivot pin point slot_link "
+    "slider rail circle angle_mark Side normal tangential turning polygon_of_velocities "
+    "polygon_of_accelerations FourBar SliderCrank "
     "Degrees from_radians scale_for to_paper if_long turned met off_both verdicts DrawingParts Moving"
 )
 FUNCTIONS = frozenset(_WORDS.split())  #: names in code that are no quantities
@@ -37,8 +39,8 @@ _OTHERS = ("pi", "min", "hypot", "result")  #: names that code or an expression 
 class Quantity:
     """Quantity of a solution.
 
-    ``step`` names the sentence that explains it, with its ``words``; a hidden one, whose name begins with an underscore, has none.
-    ``stable`` is the code by which it is computed where the formula would lose digits.
+    ``step`` names the sentence that explains it, with its ``words``; a hidden one, whose name begins with an
+    underscore, has none. ``stable`` is the code by which it is computed where the formula would lose digits.
     """
 
     name: str
@@ -86,7 +88,8 @@ def names_in(code: str) -> tuple[str, ...]:
 
 @dataclass(frozen=True)
 class UsualMistake:
-    """Named mistake: the quantities that it gets wrong, the wrong codes, and the sentence about it with its words."""
+    """Named mistake: the quantities that it gets wrong, the wrong codes, and the sentence about it with its
+    words."""
 
     name: str
     targets: tuple[str, ...]
@@ -124,8 +127,8 @@ class Arm:
 
 
 class SlideLine(NamedTuple):
-    """Line along which a point of a body moves: the placed body that carries it, the coordinates of the point where the distance is 0,
-    the sign of the distance, and the direction of the slide."""
+    """Line along which a point of a body moves: the placed body that carries it, the coordinates of the point
+    where the distance is 0, the sign of the distance, and the direction of the slide."""
 
     placed: str
     base: Plane
@@ -182,7 +185,8 @@ class PointWriter:
         return tuple(t for t in turns if t.startswith("theta") and t != self.linkage.moved)
 
     def _name_turns(self) -> None:
-        """Give each body the quantity, or the constant, that turns it; bodies that slide on each other share it."""
+        """Give each body the quantity, or the constant, that turns it; bodies that slide on each other share
+        it."""
         linkage = self.linkage
         home = {body: body for body in (GROUND, *linkage.bodies)}
 
@@ -287,8 +291,13 @@ class PointWriter:
         return Arm(sign, length, heading)
 
     def write_polar(
-        self, names: tuple[str, str], gap: Plane, steps: tuple[str, str], symbols: tuple[str, str], words: Mapping[str, str]
-    ) -> None:  # fmt: skip
+        self,
+        names: tuple[str, str],
+        gap: Plane,
+        steps: tuple[str, str],
+        symbols: tuple[str, str],
+        words: Mapping[str, str],
+    ) -> None:
         """Write the length and the direction of a vector."""
         codes = f"sqrt(({gap.x.code})**2 + ({gap.y.code})**2)", f"atan2({gap.y.code}, {gap.x.code})"
         for name, code, unit, step, symbol in zip(names, codes, ("mm", "deg"), steps, symbols, strict=True):
@@ -358,9 +367,13 @@ class PointWriter:
         unit, what = ("mm/s", "velocity") if kind == "v" else ("mm/s^2", "acceleration")
         for axis, component in (("x", rates.x), ("y", rates.y)):
             self.write(
-                f"{kind}_{point}_{axis}", component.code, unit, f"{what}_{step}_{axis}",
-                f"{kind}_{{{point}{axis}}}", words=words,
-            )  # fmt: skip
+                f"{kind}_{point}_{axis}",
+                component.code,
+                unit,
+                f"{what}_{step}_{axis}",
+                f"{kind}_{{{point}{axis}}}",
+                words=words,
+            )
 
     def _turning(self, body: str, arm: Plane, kind: str) -> Plane:
         """Return the velocity, or the acceleration, that the turning of a body adds over an arm."""
@@ -371,8 +384,8 @@ class PointWriter:
         )
 
     def growth(self, body: str, arm: Arm, kind: str, heading: Heading | None = None) -> Plane:
-        """Return the velocity, or the acceleration, that the driving jack adds over an arm as it grows, in axes turned by a direction;
-        nothing for any other body."""
+        """Return the velocity, or the acceleration, that the driving jack adds over an arm as it grows, in
+        axes turned by a direction; nothing for any other body."""
         linkage = self.linkage
         if body != linkage.jack or arm.length.vanishes:
             return Plane()
@@ -385,7 +398,8 @@ class PointWriter:
         )
 
     def carried(self, body: str, point: Plane, kind: str) -> Plane:
-        """Return the velocity, or the acceleration, of the point of a placed body that lies at coordinates now."""
+        """Return the velocity, or the acceleration, of the point of a placed body that lies at coordinates
+        now."""
         if body == GROUND:
             return Plane()
         start = self.reference[body]
@@ -475,7 +489,8 @@ class PointWriter:
         return list(results.values())
 
     def symbol(self, name: str) -> str:
-        """Return the LaTeX of a quantity: a length named by two points, such as ``AC``, is written like the segment."""
+        """Return the LaTeX of a quantity: a length named by two points, such as ``AC``, is written like the
+        segment."""
         own = self.quantities.get(name)
         if own is not None and own.symbol:
             return own.symbol

@@ -1,4 +1,5 @@
-"""Questions of a mechanism's file: parts of the exercise, the quantities behind them, their usual mistakes."""
+"""Questions of a mechanism's file: parts of the exercise, the quantities behind them, their usual
+mistakes."""
 
 from __future__ import annotations
 
@@ -182,9 +183,17 @@ class QuestionWriter:
         )
 
     def _rates(
-        self, names: list[str], key: str, stem: str, unit: str, prefix: str, per: str, ending: str,
-        of: Callable[[str], Plane], what: str,
-    ) -> None:  # fmt: skip
+        self,
+        names: list[str],
+        key: str,
+        stem: str,
+        unit: str,
+        prefix: str,
+        per: str,
+        ending: str,
+        of: Callable[[str], Plane],
+        what: str,
+    ) -> None:
         turns = {turn.replace("theta", stem, 1): turn for turn in self.formulas.followed_turns}
         points = {f"{prefix}{p}": p for p in self._moving_points}
         slides = {s + ending: s for s in self._slides}
@@ -319,9 +328,13 @@ class QuestionWriter:
         for name in names:
             match = _CENTRE.match(name)
             pair = next(
-                ((bodies[name[1:k].rstrip("_")], bodies[name[k:].lstrip("_")]) for k in range(2, len(name))
-                 if name[1:k].rstrip("_") in bodies and name[k:].lstrip("_") in bodies), None
-            )  # fmt: skip
+                (
+                    (bodies[name[1:k].rstrip("_")], bodies[name[k:].lstrip("_")])
+                    for k in range(2, len(name))
+                    if name[1:k].rstrip("_") in bodies and name[k:].lstrip("_") in bodies
+                ),
+                None,
+            )
             if match is None or pair is None or pair[0] == pair[1]:
                 raise self.linkage.refused(
                     at, "an instant centre is I13: two bodies, 1 the ground; found {name!r}", name=name
@@ -395,7 +408,8 @@ class QuestionWriter:
         if output not in able:
             raise linkage.refused(
                 ("ask", "advantage"),
-                "the advantage is that of a body that turns, or of a slide on the ground: {found}; found {value!r}",
+                "the advantage is that of a body that turns, or of a slide on the ground: {found}; "
+                "found {value!r}",
                 found=", ".join(able),
                 value=value,
             )

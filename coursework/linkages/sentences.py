@@ -178,7 +178,8 @@ def exercise_text(formulas: FormulaWriter, questions: QuestionWriter, lang: str)
     joints = [p for p in linkage.points if p in linkage.pins]
     key = "figure" if linkage.drive.kind == "turn" else "figure_length"
     pieces.append(
-        f"## figure\n{writer.sentence('statement', key, {'points': ', '.join(joints), 'name': linkage.moved})}"
+        "## figure\n"
+        f"{writer.sentence('statement', key, {'points': ', '.join(joints), 'name': linkage.moved})}"
     )
     return "\n\n".join(pieces) + "\n"
 
@@ -382,12 +383,14 @@ def solution_text(formulas: FormulaWriter, questions: QuestionWriter, lang: str)
 
 
 def _first(writer: SentenceWriter) -> str:
-    """Return what stands before the groups: the driver, or for a jack that groups hold nothing but its length."""
+    """Return what stands before the groups: the driver, or for a jack that groups hold nothing but its
+    length."""
     return writer.sentence("solution", f"first_{writer.linkage.drive.kind}")
 
 
 def _step(writer: SentenceWriter, step: str, words: Mapping[str, str]) -> str:
-    """Return the sentence of a step: its own, else the one without what a moving guide adds; a second component is likewise."""
+    """Return the sentence of a step: its own, else the one without what a moving guide adds; a second
+    component is likewise."""
     for key in (step, step.removesuffix("_moved"), step.removesuffix("_jack")):
         if writer.has("step", key):
             return writer.sentence("step", key, words)

@@ -1,4 +1,5 @@
-"""Sides of polygons that have no length in any position, as those of a body that never turns: nothing is there to draw."""
+"""Sides of polygons that have no length in any position, as those of a body that never turns: nothing is
+there to draw."""
 
 from __future__ import annotations
 
@@ -18,7 +19,8 @@ _NOTHING = 1e-9  #: of the longest side
 
 
 def refuse_still_sides(polygons: Sequence[PolygonWriter], exercise: ModuleType, solution: ModuleType) -> None:
-    """Refuse polygons of which a side that must be long enough to draw has no length wherever the mechanism closes.
+    """Refuse polygons of which a side that must be long enough to draw has no length wherever the mechanism
+    closes.
 
     Parameters
     ----------
@@ -50,7 +52,8 @@ def refuse_still_sides(polygons: Sequence[PolygonWriter], exercise: ModuleType, 
             if lengths.size and has_none and f"abs({side.value})" in polygon.lines:
                 raise polygon.linkage.refused(
                     ("ask", "polygon"),
-                    "{vector} is zero in all positions, as on a body that never turns: a polygon of {kind!r} has nothing to draw there; ask {table} in its place",
+                    "{vector} is zero in all positions, as on a body that never turns: a polygon of "
+                    "{kind!r} has nothing to draw there; ask {table} in its place",
                     kind=polygon.kind,
                     vector=plain_line(f"${side.name}$", "en"),
                     table="velocities" if polygon.kind == "velocity" else "accelerations",

@@ -22,7 +22,8 @@ _MOST_ENTRIES = 100  #: of each table and list of a file
 
 
 class TableReader(TomlReader):
-    """Reader of tables whose numbers have units, and of places; numbers that stand in places get names of their own."""
+    """Reader of tables whose numbers have units, and of places; numbers that stand in places get names of
+    their own."""
 
     def __init__(self, path: Path, source: str, table: Mapping[str, Any]) -> None:
         super().__init__(path, source)
@@ -98,8 +99,8 @@ class TableReader(TomlReader):
     def _expression(
         self, at: Sequence[str | int], text: object, unit: str, name: str = "", always: bool = False
     ) -> QuantityExpression:
-        """Read an expression; a number other than 0, or any if ``always``, becomes a given quantity of that name, which the sheet lists
-        among its data."""
+        """Read an expression; a number other than 0, or any if ``always``, becomes a given quantity of that
+        name, which the sheet lists among its data."""
         found: QuantityExpression = self._checked(at, ExpressionReader(self.units).read, text, unit)
         if (
             not name
@@ -139,7 +140,8 @@ class TableReader(TomlReader):
             if not found.is_number:
                 raise self.refused(
                     at,
-                    "{name} is a number with its unit, or a range; what follows from {others} stands where it is used: B = {value}",
+                    "{name} is a number with its unit, or a range; what follows from {others} stands "
+                    "where it is used: B = {value}",
                     name=name,
                     others=", ".join(found.names),
                     value=f'"{value}"',
@@ -171,10 +173,13 @@ class TableReader(TomlReader):
             if math.floor(float(high.code) / width + _NEAR) < math.ceil(float(low.code) / width - _NEAR):
                 raise self.refused(
                     (*at, "step"),
-                    "no multiple of {step} lies between {low} and {high}: there is no value to draw; choose a smaller step",
-                    step=step, low=value["from"], high=value["to"],
-                )  # fmt: skip
-        exact = f"{Fraction(width).limit_denominator(10**6).numerator / Fraction(width).limit_denominator(10**6).denominator:.9g}"
+                    "no multiple of {step} lies between {low} and {high}: there is no value to draw; "
+                    "choose a smaller step",
+                    step=step,
+                    low=value["from"],
+                    high=value["to"],
+                )
+        exact = f"{float(Fraction(width).limit_denominator(10**6)):.9g}"
         positive = unit == "mm" and (not low.is_number or float(low.code) > 0)
         return GivenEntry(unit, None, low, high, exact, bool(value.get("nonzero", False)), positive)
 

@@ -1,4 +1,5 @@
-"""Velocity and acceleration polygons of a mechanism: their sides as code, and the questions about the drawing."""
+"""Velocity and acceleration polygons of a mechanism: their sides as code, and the questions about the
+drawing."""
 
 from __future__ import annotations
 
@@ -17,14 +18,15 @@ _POLES = {"velocity": "p_v", "acceleration": "p_a"}
 
 
 def are_drawn(groups: Sequence[Group]) -> bool:
-    """Return True if groups are drawn one after another; one of class III and above, which moves as a whole, is not."""
+    """Return True if groups are drawn one after another; one of class III and above, which moves as a whole,
+    is not."""
     return all(isinstance(group, (Dyad, Wheel)) for group in groups)
 
 
 @dataclass(frozen=True)
 class DrawnSide:
-    """Side of a polygon: the image points at its ends, its name in LaTeX, whether it is known or a line, the code of its vector and of
-    the direction of its line, and the call that states it."""
+    """Side of a polygon: the image points at its ends, its name in LaTeX, whether it is known or a line, the
+    code of its vector and of the direction of its line, and the call that states it."""
 
     start: str
     end: str
@@ -96,7 +98,8 @@ class PolygonWriter:
                 case _:
                     raise self.linkage.refused(
                         ("ask", "polygon"),
-                        "polygons are drawn body after body; {bodies} are one group of class III or above, which moves as a whole; ask velocities in their place",
+                        "polygons are drawn body after body; {bodies} are one group of class III or "
+                        "above, which moves as a whole; ask velocities in their place",
                         bodies=", ".join(group.bodies),
                     )
             drawn.add(found)
@@ -122,7 +125,8 @@ class PolygonWriter:
             yield from self._carried(linkage.driver, drawn)
 
     def _carried(self, body: str, drawn: set[str]) -> Iterator[list[DrawnSide]]:
-        """Yield the sides of the joints that a body carries beside those that are drawn; a body that does not turn adds none."""
+        """Yield the sides of the joints that a body carries beside those that are drawn; a body that does not
+        turn adds none."""
         start = self.formulas.reference[body]
         for point in self.linkage.bodies[body].points:
             if (
@@ -141,11 +145,13 @@ class PolygonWriter:
     def _about(
         self, body: str, start: str, end: str, primes: str, image: str = "", of: str = "", begin: str = ""
     ) -> list[DrawnSide]:
-        """Return the sides from the image of a point of a body to that of another; without ``primes`` they are known, since the motion
-        of the body is. ``image`` and ``of`` are those of the end, unless a point of the body that lies there has its own: a vector
-        from another image than the pole is named by the point it begins at as well."""
+        """Return the sides from the image of a point of a body to that of another; without ``primes`` they
+        are known, since the motion of the body is. ``image`` and ``of`` are those of the end, unless a point
+        of the body that lies there has its own: a vector from another image than the pole is named by the
+        point it begins at as well."""
         vector, line = self._vector(start, end), start + end
-        # A jack's vectors are named by both its pins, or those about two fixed pivots would have the same name.
+        # A jack's vectors are named by both its pins, or those about two fixed pivots would have the same
+        # name.
         of = f"{end}/{start}" if body == self.linkage.jack else self._of(start, of or end)
         begin, image = begin or self._image(start), image or end.lower()
         omega, alpha = self.formulas.omega(body), self.formulas.alpha(body)
@@ -181,8 +187,8 @@ class PolygonWriter:
     def _grown(
         self, body: str, start: str, end: str, line: str, of: str
     ) -> list[tuple[str, str, str, str, str]]:
-        """Return what a driving jack adds as it grows: of each vector the image of its end, its name, its value, its direction and its
-        size; nothing for any other body."""
+        """Return what a driving jack adds as it grows: of each vector the image of its end, its name, its
+        value, its direction and its size; nothing for any other body."""
         linkage, formulas = self.linkage, self.formulas
         if body != linkage.jack:
             return []
@@ -228,14 +234,16 @@ class PolygonWriter:
 
     @staticmethod
     def _met(first: list[DrawnSide], other: list[DrawnSide]) -> list[DrawnSide]:
-        """Return the sides of two ways to an image: what is known of both, then the two lines that cross there."""
+        """Return the sides of two ways to an image: what is known of both, then the two lines that cross
+        there."""
         return [*first[:-1], *other[:-1], first[-1], other[-1]]
 
     def _sliding(
         self, slide: SlideEntry, body: str, point: str, image: str = "", under: str = ""
     ) -> tuple[list[DrawnSide], list[DrawnSide]]:
-        """Return the sides that lead to the image of a point of a body that slides on a placed one: those of the point of the guide
-        under it, all known, and those of the motion on the guide, the last of them a line."""
+        """Return the sides that lead to the image of a point of a body that slides on a placed one: those of
+        the point of the guide under it, all known, and those of the motion on the guide, the last of them a
+        line."""
         formulas, slides = self.formulas, body == slide.of
         guide = slide.on if slides else slide.of
         known: list[DrawnSide] = []
@@ -262,8 +270,8 @@ class PolygonWriter:
         line: str,
         back: str = "",
     ) -> list[DrawnSide]:
-        """Return the sides of a motion along a guide, ``back`` where it is laid off from the block to the guide: the Coriolis
-        acceleration where the guide turns, and a line."""
+        """Return the sides of a motion along a guide, ``back`` where it is laid off from the block to the
+        guide: the Coriolis acceleration where the guide turns, and a line."""
         (speed, gain), (start, image), symbol = slide.rates, ends, self.formulas.symbol
         sign, way = ("-", way[1:]) if way.startswith("-") else ("", way)
         omega = self.formulas.omega(guide) if guide != GROUND else "0"
@@ -282,8 +290,8 @@ class PolygonWriter:
         return [*sides, DrawnSide(start, image, name, False, value, way, call)]
 
     def _guided(self, group: Dyad, slide: SlideEntry) -> list[DrawnSide]:
-        """Return the sides of a guide that turns about a joint: to the image of its point under the block, from the joint and from the
-        block."""
+        """Return the sides of a guide that turns about a joint: to the image of its point under the block,
+        from the joint and from the block."""
         P, guide = str(group.outer_p), group.q
         under, image = f"{P}_{{{guide}}}", f"{P.lower()}_{guide}"
         first = self._about(guide, str(group.outer_q), P, "'", image, under)
@@ -294,7 +302,8 @@ class PolygonWriter:
         )
 
     def _crossed(self, group: Dyad, inner: SlideEntry, outer: SlideEntry) -> Iterator[list[DrawnSide]]:
-        """Yield the sides of a body that slides on a placed one and carries a block: to the image of its point under the block."""
+        """Yield the sides of a body that slides on a placed one and carries a block: to the image of its
+        point under the block."""
         P, yoke = str(group.outer_p), group.q
         under, image = f"{P}_{{{yoke}}}", f"{P.lower()}_{yoke}"
         known, along = self._sliding(outer, yoke, P, image, under)
@@ -436,8 +445,8 @@ class PolygonWriter:
 
     @property
     def lines(self) -> tuple[str, ...]:
-        """Lengths of the vectors that must be long enough to draw, as code: all velocities; of accelerations those that are found on
-        lines, since a normal acceleration may be next to nothing in all positions."""
+        """Lengths of the vectors that must be long enough to draw, as code: all velocities; of accelerations
+        those that are found on lines, since a normal acceleration may be next to nothing in all positions."""
         return (
             tuple(f"abs({s.value})" for s in self.sides if self.kind == "velocity" or not s.is_known)
             or self.lengths
@@ -472,6 +481,7 @@ class PolygonWriter:
         sides = {(side.start, side.end): self.side_key(side) for side in self.sides}
         return (
             f"@judge\ndef drawing_{self.kind}(answers, {', '.join(given)}):\n"
-            f"    asked = DrawingParts(scale={self.scale!r}, points={dict(self.parts)!r}, lengths={{}}, reads={{}}, sides={sides!r})\n"
+            f"    asked = DrawingParts(scale={self.scale!r}, points={dict(self.parts)!r}, "
+            f"lengths={{}}, reads={{}}, sides={sides!r})\n"
             f"    return verdicts(answers, {self.reference(given)}, asked)"
         )

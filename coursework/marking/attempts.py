@@ -1,7 +1,8 @@
-"""From which wrong answers a right method may go on: from attempts, and from nothing that is written without work.
+"""From which wrong answers a right method may go on: from attempts, and from nothing that is written without
+work.
 
-Whoever writes one number in every box, the numbers of the questions, or what is given, follows no method, though such
-answers may agree with each other. Nor does who writes numbers far from any that could be meant.
+Whoever writes one number in every box, the numbers of the questions, or what is given, follows no method,
+though such answers may agree with each other. Nor does who writes numbers far from any that could be meant.
 """
 
 from __future__ import annotations
@@ -17,7 +18,8 @@ from coursework.course.answer_key import Key
 from coursework.model import Part
 from coursework.parsing.reading import Reading
 
-FARTHEST = 100.0  #: factor between the size of an attempt and that of the reference, unless a known error explains it
+#: Factor between the size of an attempt and that of the reference, unless a known error explains it.
+FARTHEST = 100.0
 THINGS = 2  #: different things that a measured number is written for, before it means nothing
 FEW = 4  #: answers at least of which something can be told
 DIFFERENT = 3  #: things at least that a copied number is written for

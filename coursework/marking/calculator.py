@@ -47,7 +47,8 @@ def values_in_radians(key: Key, quantity: str, own_answers: Mapping[str, Any]) -
 
 
 def fitting(key: Key, part: Part, reading: Reading, value: float) -> int | None:
-    """Return the first of an answer's readings that is this value, if any is; of a direction the number: 0.2 radians are not 1°."""
+    """Return the first of an answer's readings that is this value, if any is; of a direction the number: 0.2
+    radians are not 1°."""
     reference = key.reference[part.quantity]
     width = key.half_width(part) * (abs(value / reference) if reference else 1.0)
     if part.sort.turn and abs(value) <= 2 * math.pi:

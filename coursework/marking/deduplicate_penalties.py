@@ -19,8 +19,8 @@ _SEVERAL = 4  #: quantities at least that formulas of one equation take
 
 
 def signs_counted_once(variant: Variant, marks: Mapping[str, Mark], share: float) -> dict[str, Mark]:
-    """Return the marks where turning every sign of an equation is one error: of quantities that a formula takes together, all
-    with the opposite sign, the first alone pays."""
+    """Return the marks where turning every sign of an equation is one error: of quantities that a formula
+    takes together, all with the opposite sign, the first alone pays."""
     turned = {i for i, mark in marks.items() if _is_turned(variant, mark)}
     if len(turned) < 2:
         return dict(marks)
@@ -45,8 +45,8 @@ def _is_turned(variant: Variant, mark: Mark) -> bool:
 
 
 def _taken_together(variant: Variant, parts: Mapping[str, Part]) -> Iterator[list[str]]:
-    """Asked numbers of one unit that a formula takes, all that it takes, or that are computed from nearly the same: ids of
-    two parts at least. No angles: one of the opposite sign is another direction."""
+    """Asked numbers of one unit that a formula takes, all that it takes, or that are computed from nearly the
+    same: ids of two parts at least. No angles: one of the opposite sign is another direction."""
     graph = variant.exercise.solution.graph.textbook
     number_parts = {
         p.quantity: p for p in parts.values() if p.sort.is_number and not p.sort.turn and not p.judge

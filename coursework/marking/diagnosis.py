@@ -1,4 +1,5 @@
-"""Why an answer is not right: what explains it among known mistakes, slips, usual errors and what a student wrote before."""
+"""Why an answer is not right: what explains it among known mistakes, slips, usual errors and what a student
+wrote before."""
 
 from __future__ import annotations
 
@@ -119,8 +120,9 @@ class Explanation(NamedTuple):
 
     @property
     def rank(self) -> tuple[bool, bool, bool, int]:
-        """The lowest is named: what is likely, what follows, what is close; what the whole sheet shows; the author's before
-        the engine's; a sign before what was made elsewhere; from afar the author's only where it is close."""
+        """The lowest is named: what is likely, what follows, what is close; what the whole sheet shows; the
+        author's before the engine's; a sign before what was made elsewhere; from afar the author's only where
+        it is close."""
         kind, far = self.verdict.partition(":")[0], not self.is_here
         if kind == "mistake":
             order = 1 if self.is_here else 3 if self.is_close else 6
@@ -141,8 +143,8 @@ def is_likely(name: str, key: Key, part: Part, before: EarlierAnswers) -> bool:
     """Return whether a mistake that explains an answer may be reported to the student.
 
     Not one made elsewhere, where what it is about has been answered rightly before. Among few cases, besides,
-    many mistakes lead to the same one: a choice tells nothing of a mistake made elsewhere that an earlier answer,
-    which it would have changed, does not show; nor of one that would have changed what is right and
+    many mistakes lead to the same one: a choice tells nothing of a mistake made elsewhere that an earlier
+    answer, which it would have changed, does not show; nor of one that would have changed what is right and
     decides it at once.
     """
     about = key.solution.mistakes[name].targets
@@ -289,7 +291,8 @@ _FEW_WRONG = 2  #: earlier answers that are wrong, from which one more error is 
 def _from_own(
     key: Key, part: Part, reading: Reading, judged_by: Part, before: EarlierAnswers
 ) -> Iterator[Explanation]:
-    """Yield the usual errors in a quantity's formula that give an answer from what the student had wrong before."""
+    """Yield the usual errors in a quantity's formula that give an answer from what the student had wrong
+    before."""
     if len(before.wrong) > _FEW_WRONG and ALL_DEGREES not in before.paid:
         return  # of so many errors nobody can tell
     if any(judged_by.quantity in key.solution.depending_on(q) for q in before.wrong):
@@ -343,7 +346,8 @@ def _fits(part: Part, reading: Reading, value: Any, along: Any, width: float) ->
 def _fitting(
     part: Part, answers: Sequence[Any], value: Any, along: Any, width: float
 ) -> tuple[int, float] | None:
-    """Return the first of an answer's readings that is this value, if any is, and how far from it in half-widths."""
+    """Return the first of an answer's readings that is this value, if any is, and how far from it in
+    half-widths."""
     for index, read in enumerate(answers):
         gap = part.sort.distance(part, read, value, along, width)
         if gap <= 1:

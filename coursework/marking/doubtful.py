@@ -1,4 +1,5 @@
-"""Answers that are wrong as they are read and would be right in another honest way to read them: a person looks."""
+"""Answers that are wrong as they are read and would be right in another honest way to read them: a person
+looks."""
 
 from __future__ import annotations
 
@@ -29,8 +30,9 @@ _ALIKE = 0.015  #: the share by which two numbers differ at most that are one va
 def settled(
     variant: Variant, readings: Mapping[str, Reading], answers: Mapping[str, Any]
 ) -> dict[str, Reading]:
-    """Return the readings, those of a doubtful answer unreadable: a quotient of two values, a power that lost its superscript,
-    a sense in words against the sign, thousands by a mark that the sheet's other numbers do not tell."""
+    """Return the readings, those of a doubtful answer unreadable: a quotient of two values, a power that lost
+    its superscript, a sense in words against the sign, thousands by a mark that the sheet's other numbers do
+    not tell."""
     parts = {p.id: p for p in variant.parts}
     return {
         i: _settled(variant, parts[i], reading, answers)
@@ -73,7 +75,8 @@ def _with_thousands(
     gap: float,
     answers: Mapping[str, Any],
 ) -> Reading:
-    """Return the reading of ``1,747`` or ``1.747``, which the decimal mark of the sheet's other numbers decides."""
+    """Return the reading of ``1,747`` or ``1.747``, which the decimal mark of the sheet's other numbers
+    decides."""
     text = reading.text.replace(mark, "", 1)
     if part.sort.turn or (gap <= 1 and index == 0) or not _is_right(variant, part, text):
         return reading
@@ -86,7 +89,8 @@ def _with_thousands(
 
 
 def _decimal_mark(texts: Iterable[Any], lang: str) -> str:
-    """Return the decimal mark of the numbers of a sheet, in English the point where none says it; nothing where they differ or say nothing."""
+    """Return the decimal mark of the numbers of a sheet, in English the point where none says it; nothing
+    where they differ or say nothing."""
     marks = {mark for text in texts if isinstance(text, str) for mark in _DECIMAL.findall(text)}
     if len(marks) == 1:
         return marks.pop()

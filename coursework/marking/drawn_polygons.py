@@ -39,7 +39,8 @@ def _coordinates(on_paper: np.ndarray) -> np.ndarray:
 
 
 def if_long(start: Any, end: Any, wrong: Any) -> np.ndarray:
-    """Return the wrong place of a vector's end on paper, NaN where the vector is so short that nobody tells how it is wrong."""
+    """Return the wrong place of a vector's end on paper, NaN where the vector is so short that nobody tells
+    how it is wrong."""
     length = np.linalg.norm(np.asarray(end) - start, axis=-1, keepdims=True)
     return np.where(length >= _LEAST_SIDE_MM, wrong, np.nan)
 
@@ -103,8 +104,8 @@ def read_off(
 ) -> dict[str, Judged]:
     """Return the verdicts, with little for what is ``read`` off a drawing that does not stand.
 
-    A drawing stands where half of its ``points`` at least, the pole aside, are right. What is ``undrawn`` is read off
-    nothing, whatever stands.
+    A drawing stands where half of its ``points`` at least, the pole aside, are right. What is ``undrawn`` is
+    read off nothing, whatever stands.
     """
     is_drawn = 2 * sum(judgements[i].share == 1.0 for i in points if i in judgements) >= len(points)
     nothing = undrawn if is_drawn else read
@@ -144,8 +145,8 @@ def _verdicts(answers: Answers, polygon: Polygon, requested: DrawingParts) -> di
 
 
 def drawn(answers: Answers, polygon: Polygon, requested: DrawingParts) -> tuple[JudgedDrawing, bool] | None:
-    """Return the judged drawing of these answers, and whether its scale is stated upside down; None unless the pole and
-    another point are drawn."""
+    """Return the judged drawing of these answers, and whether its scale is stated upside down; None unless
+    the pole and another point are drawn."""
     points = {requested.points[i]: complex(*answers[i]) for i in requested.points if i in answers}
     if polygon.pole not in points or len(points) < 2:
         return None
@@ -253,7 +254,8 @@ def _reads(answers: Answers, drawing: JudgedDrawing, requested: DrawingParts) ->
 
 
 def _right_reads(answers: Answers, polygon: Polygon, requested: DrawingParts) -> dict[str, Judged]:
-    """Without scale and drawing, the values that are right all the same; nothing can be said of the others."""
+    """Without scale and drawing, the values that are right all the same; nothing can be said of the
+    others."""
     usual = float(scale_for(*(np.asarray(image, dtype=complex) for image in polygon.points.values())))
     judgements = _reads(answers, judge_drawing(polygon, {polygon.pole: 0j}, usual), requested)
     return {part: verdict for part, verdict in judgements.items() if verdict.share == 1.0}
@@ -322,7 +324,8 @@ def met(through: np.ndarray, along: Any, other: np.ndarray, other_along: Any) ->
 
 
 def off_both(b: np.ndarray, lines: Sequence[Any], end: np.ndarray) -> np.ndarray:
-    """Return a point off both the lines that cross at b by as much, nearly half as far as b is from ``end``."""
+    """Return a point off both the lines that cross at b by as much, nearly half as far as b is from
+    ``end``."""
     first, second = (line / abs(line) for line in lines)
     between = np.where(abs(first + second) < abs(first - second), first + second, first - second)
     step = 0.4 * np.hypot(*np.moveaxis(b - end, -1, 0)) * between / abs(between)

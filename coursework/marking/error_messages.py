@@ -199,7 +199,8 @@ def _unexplained_message(variant: Variant, part: Part, read: str, before: Earlie
 
 
 def _given_above(variant: Variant, quantity: str) -> list[str]:
-    """Return the symbols of the given quantities that one is computed from; none of so many that a list tells nothing."""
+    """Return the symbols of the given quantities that one is computed from; none of so many that a list tells
+    nothing."""
     graph = variant.exercise.solution.graph.textbook
     above = graph.ancestors((quantity,)) if quantity in graph.names else frozenset()
     given = [name for name in variant.stated if name in above and name != quantity]
@@ -207,7 +208,8 @@ def _given_above(variant: Variant, quantity: str) -> list[str]:
 
 
 def _asked_above(variant: KeySource, quantity: str, among: set[str]) -> list[Part]:
-    """Return the nearest parts that a quantity is computed from, of some quantities, in the order of the sheet."""
+    """Return the nearest parts that a quantity is computed from, of some quantities, in the order of the
+    sheet."""
     graph = variant.exercise.solution.graph.textbook
     met: set[str] = set()
     names: set[str] = set()

@@ -40,10 +40,12 @@ def exchanged(
     *,
     is_guessed: bool,
 ) -> dict[str, Exchange]:
-    """Return by part the other part whose box its answer stands in, of answers that are ``wrong`` where they stand.
+    """Return by part the other part whose box its answer stands in, of answers that are ``wrong`` where they
+    stand.
 
-    Counts and cases exchange by chance. Of counts a pair is meant where no other count is wrong and the later one does
-    not follow from the earlier; of cases never. Of answers with ``verdicts`` of a judge the judge is asked once more.
+    Counts and cases exchange by chance. Of counts a pair is meant where no other count is wrong and the later
+    one does not follow from the earlier; of cases never. Of answers with ``verdicts`` of a judge the judge is
+    asked once more.
     """
     boxes = _Boxes(variant, readings, wrong, verdicts)
     counts = [p for p in boxes.parts if p.sort.is_exact]
@@ -87,7 +89,8 @@ class _Boxes:
         )
 
     def exchange(self, first: Part, other: Part) -> dict[str, Exchange]:
-        """Return both exchanges where each answer is right in the box of the other, unless each is explained in its own."""
+        """Return both exchanges where each answer is right in the box of the other, unless each is explained
+        in its own."""
         if not (self._is_near(first, other) and self._is_near(other, first)):
             return {}
         if self._are_explained(first, other):
@@ -107,8 +110,8 @@ class _Boxes:
         return ways if self._is_right_to_judges(ways) else {}
 
     def _is_right_to_judges(self, ways: Mapping[str, Exchange]) -> bool:
-        """Return whether the judges of exchanged answers take each for right where it belongs, and name no mistake of theirs
-        any more: what other answers show still is no exchange."""
+        """Return whether the judges of exchanged answers take each for right where it belongs, and name no
+        mistake of theirs any more: what other answers show still is no exchange."""
         shown = {v.said.mistake for i in ways if (v := self._verdicts.get(i)) and v.said} - {""}
         placed = {way.part.id: way.reading.values[way.place] for way in ways.values() if way.part.judge}
         for name, ids in judges_of(self._variant):
@@ -142,7 +145,8 @@ class _Boxes:
         return all(shown) and len(set(shown)) <= 1 and all(self._is_explained(p) for p in pair if not p.judge)
 
     def _mistake(self, part: Part, pair: Sequence[Part]) -> str:
-        """Return the mistake that a judge names of an answer, and of none beyond the pair unless it gives just this answer."""
+        """Return the mistake that a judge names of an answer, and of none beyond the pair unless it gives
+        just this answer."""
         said = {i: v.said for i, v in self._verdicts.items() if v.said}
         named = said[part.id].mistake if part.id in said else ""
         if self._gives(named, part):
@@ -151,7 +155,8 @@ class _Boxes:
         return "" if any(said[i].mistake == named for i in others if i in said) else named
 
     def _gives(self, mistake: str, part: Part) -> bool:
-        """Return whether a mistake, itself no exchange, gives an answer to a judge as closely as people round."""
+        """Return whether a mistake, itself no exchange, gives an answer to a judge as closely as people
+        round."""
         key = self._variant.key
         if not mistake or key.solution.mistakes[mistake].kind == "exchanged":
             return False
@@ -191,8 +196,8 @@ class _Boxes:
         )
 
     def _is_near(self, box: Part, other: Part) -> bool:
-        """Return whether an answer may be right in another box: a cheap test that never rejects a number without
-        a unit wrongly."""
+        """Return whether an answer may be right in another box: a cheap test that never rejects a number
+        without a unit wrongly."""
         reading, key = self._readings[box.id], self._variant.key
         if reading.status != "read":
             return other.sort.is_scalar

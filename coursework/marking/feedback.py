@@ -37,8 +37,8 @@ class Sentence(NamedTuple):
     pieces: Mapping[str, str]
 
     def texts(self, lang: str) -> tuple[str, str]:
-        """Return the sentence with its pieces: Markdown, and one line of plain text. Sentences and most pieces recur: each is
-        made plain once."""
+        """Return the sentence with its pieces: Markdown, and one line of plain text. Sentences and most
+        pieces recur: each is made plain once."""
         pieces = {n: text if _is_plain(text) else plain_line(text, lang) for n, text in self.pieces.items()}
         plain = " ".join(_plain_sentence(self.sentence, lang).format(**pieces).split())
         return self.sentence.format(**self.pieces), plain
@@ -122,7 +122,8 @@ def say_not_read(variant: Variant, part: Part, reading: Reading) -> Sentence:
 
 
 def _to_eliminate(variant: Variant, part: Part, run: str) -> str:
-    """Return the symbol of the statement in a run of letters that an equation must not contain; nothing where none is."""
+    """Return the symbol of the statement in a run of letters that an equation must not contain; nothing where
+    none is."""
     stated = {*variant.given, *(p.quantity for p in variant.parts if p.sort.is_scalar)}
     stated |= {name for p in variant.parts for name in p.variables}
     vocabulary, run = vocabulary_of(tuple(sorted(stated))), spelled_out(plain_spelling(run)).strip()

@@ -37,7 +37,8 @@ def mark_judged(
     missed: Callable[[], str],
     before: EarlierAnswers,
 ) -> Mark:
-    """Return the mark of a part that is judged together with others; ``told_with`` bears the same remark already."""
+    """Return the mark of a part that is judged together with others; ``told_with`` bears the same remark
+    already."""
     read_as, verdict = reading.read_as[judgement.reading], judgement.said
     mark_of = partial(made_mark, variant, part, reading)
     if verdict is None:
@@ -106,7 +107,8 @@ def mark_judged(
 
 
 def _unexplained(variant: Variant, part: Part) -> str:
-    """Return the key of the sentence for an answer that nothing explains: one that is drawn has no relation to start from."""
+    """Return the key of the sentence for an answer that nothing explains: one that is drawn has no relation
+    to start from."""
     is_drawn = any(p.kind == "point" and p.judge == part.judge for p in variant.parts)
     return "wrong_drawn" if is_drawn and part.sort.wrong == "wrong" else part.sort.wrong
 

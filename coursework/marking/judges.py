@@ -40,8 +40,8 @@ def judged(
 ) -> dict[str, Judged]:
     """Return the judgement of a judge on answers by part id, each a number or coordinates in the part's unit.
 
-    Nothing of an answer that cannot be judged because others are missing. ``own_answers`` holds quantities that a
-    student has answered before, to be judged from in place of the right ones.
+    Nothing of an answer that cannot be judged because others are missing. ``own_answers`` holds quantities
+    that a student has answered before, to be judged from in place of the right ones.
 
     Raises
     ------
@@ -122,7 +122,8 @@ def judged_again(
     own_answers: Mapping[str, float],
     wrong: Collection[str],
 ) -> dict[str, Verdict]:
-    """Return the verdicts of a judge where answers may follow from others, and show slips that nobody need name.
+    """Return the verdicts of a judge where answers may follow from others, and show slips that nobody need
+    name.
 
     They follow from a student's ``own_answers``, where some quantity that was answered before is ``wrong``.
     """
@@ -168,10 +169,11 @@ def _without_slips(
     verdicts: Mapping[str, Verdict],
     own_answers: Mapping[str, float],
 ) -> dict[str, Verdict]:
-    """Return the verdicts, with its slip for each number that would be right without one: angles in radians, metres.
+    """Return the verdicts, with its slip for each number that would be right without one: angles in radians,
+    metres.
 
-    A slip that several answers may show is taken from all of them at once, then from each alone: a judge may judge
-    each by the others.
+    A slip that several answers may show is taken from all of them at once, then from each alone: a judge may
+    judge each by the others.
     """
     explained = dict(verdicts)
     unexplained = {i for i, v in verdicts.items() if v.is_wrong and v.said and not v.said.mistake}

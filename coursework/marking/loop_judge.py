@@ -1,15 +1,15 @@
 """Equations of loops judged for what they say, not for how they are written.
 
-The poses of a mechanism form a surface in the space of its symbols, and the equations of a loop are a
-basis of what holds there. An equation is right for the loop when it holds at every pose and its gradient there is a
-combination of the gradients of the reference equations: moved sides, another axis of projection, a
-factor, one unknown eliminated, a complex form, all at once. Two answers about one loop are right together when
-their combinations are independent. An equation whose gradient vanishes at the poses (a square) says
-nothing there, and is not right.
+The poses of a mechanism form a surface in the space of its symbols, and the equations of a loop are a basis
+of what holds there. An equation is right for the loop when it holds at every pose and its gradient there is a
+combination of the gradients of the reference equations: moved sides, another axis of projection, a factor,
+one unknown eliminated, a complex form, all at once. Two answers about one loop are right together when their
+combinations are independent. An equation whose gradient vanishes at the poses (a square) says nothing there,
+and is not right.
 
 Poses are those of the exercise's own first variants, so that a form that holds on the mechanism's branch is
-right. What is wrong is looked up among the faults of :mod:`coursework.quantities.loops`: each has poses of its own, at which
-whoever made it has an equation that holds.
+right. What is wrong is looked up among the faults of :mod:`coursework.quantities.loops`: each has poses of
+its own, at which whoever made it has an equation that holds.
 """
 
 from __future__ import annotations
@@ -53,8 +53,8 @@ class Finding(NamedTuple):
     """Judgement of one equation of a loop.
 
     ``rank``: how many independent equations of the loop it holds; 0 when it is not right. ``rows``: their
-    coefficients on the reference equations at each pose, shape (poses, 2, 2). ``fault`` and ``names``: what is
-    missed and about which symbols, where it is known.
+    coefficients on the reference equations at each pose, shape (poses, 2, 2). ``fault`` and ``names``: what
+    is missed and about which symbols, where it is known.
     """
 
     rank: int
@@ -220,9 +220,11 @@ class LoopJudge:
         return Finding(rank, rows) if rank else Finding(0, fault="not_derived")
 
     def _is_wrapped(self, equation: Equation) -> bool:
-        """Return whether a function is put about the whole of a right equation: ``exp(l - r) = 1``, ``atan(l) = atan(r)``.
+        """Return whether a function is put about the whole of a right equation: ``exp(l - r) = 1``,
+        ``atan(l) = atan(r)``.
 
-        Whoever takes the function off has the equation itself. So does no angle that is solved for, nor a complex form.
+        Whoever takes the function off has the equation itself. So does no angle that is solved for, nor a
+        complex form.
         """
         left, right = equation.left.root, equation.right.root
         inner = []

@@ -16,7 +16,8 @@ if TYPE_CHECKING:
 def half_widths_off(variant: Variant, part: Part, answer: Any) -> float | None:
     """Return the distance of an answer from the reference in accepted half-widths: right up to 1.
 
-    None of what has no such distance: an answer that is not read, or a part that is judged exactly, with others or by a person.
+    None of what has no such distance: an answer that is not read, or a part that is judged exactly, with
+    others or by a person.
     """
     if not part.has_margin or part.sort.is_open or part.judge:
         return None

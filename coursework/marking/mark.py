@@ -23,7 +23,9 @@ class Mark(NamedTuple):
     part: str
     answer: str  #: the text as it came
     read_as: str  #: what was read in it; empty when nothing was
-    verdict: str  #: correct, follow_through, mistake:NAME, slip:KIND, partial, wrong, wrong_unit, missing_unit, unreadable, to_mark or missing
+    #: Correct, follow_through, mistake:NAME, slip:KIND, partial, wrong, wrong_unit, missing_unit, unreadable,
+    #: to_mark or missing.
+    verdict: str
     points: float
     out_of: float
     lang: str
@@ -76,9 +78,15 @@ class SheetMarks(Mapping[str, Mark]):
 
 
 def made_mark(
-    variant: Variant, part: Part, reading: Reading, verdict: str, share: float, read_as: str,
-    message: Sentence, matches: tuple[str, ...] = (),
-) -> Mark:  # fmt: skip
+    variant: Variant,
+    part: Part,
+    reading: Reading,
+    verdict: str,
+    share: float,
+    read_as: str,
+    message: Sentence,
+    matches: tuple[str, ...] = (),
+) -> Mark:
     """Return the mark of an answer that earns a share of its part's points."""
     points = float(part.points)
     return Mark(

@@ -138,16 +138,17 @@ def mark(variant: Variant, answers: Mapping[str, Any], known: Mapping[str, str] 
 
 
 def mark_alone(variant: Variant, part: Part, answer: Any) -> Mark:
-    """Return the mark of an answer on an otherwise empty sheet, to a part that neither a judge nor the order of others
-    decides; the other parts are not read."""
+    """Return the mark of an answer on an otherwise empty sheet, to a part that neither a judge nor the order
+    of others decides; the other parts are not read."""
     reading = settled(variant, {part.id: read(variant, part, answer)}, {part.id: answer})[part.id]
     nearest = nearest_reading(part, reading, variant.key, part)
     return _mark_part(variant, variant.key, part, reading, part, nearest, EarlierAnswers())
 
 
 def is_right_alone(variant: Variant, part: Part, answer: Any) -> bool:
-    """Return whether an answer is the right one where those are right that are judged with it, in any order in which whole
-    groups may be exchanged. Of many answers that a judge takes, only what is near the reference is."""
+    """Return whether an answer is the right one where those are right that are judged with it, in any order
+    in which whole groups may be exchanged. Of many answers that a judge takes, only what is near the
+    reference is."""
     groups = [group for group in variant.exercise.spec.either_order if part.id in group]
     if not part.judge and not groups:
         return mark_alone(variant, part, answer).verdict == "correct"
@@ -224,8 +225,8 @@ def _named_exchange(key: Key, verdict: Verdict | None) -> str:
 def _mark_exchanged(
     variant: Variant, key: Key, part: Part, exchange: Exchange, named: str, marks: Mapping[str, Mark]
 ) -> Mark:
-    """Return the mark of an answer that stands in the box of another: the exchange is paid for where it is first met, and there
-    told in the words of the mistake that is ``named``, if any."""
+    """Return the mark of an answer that stands in the box of another: the exchange is paid for where it is
+    first met, and there told in the words of the mistake that is ``named``, if any."""
     other, reading = exchange.part, exchange.reading
     read_as, read = shown_as(variant, other, reading, exchange.place)
     mark_of = partial(made_mark, variant, part, reading)

@@ -1,7 +1,8 @@
 """Plain right answers, a column at a time: most of what comes back, and the cheapest to mark.
 
-An answer of digits alone, or with the unit as it is printed, that lies within its part's own margin is right whatever else the student wrote.
-Everything else is left to :mod:`coursework.marking.marking`, whose marks these are.
+An answer of digits alone, or with the unit as it is printed, that lies within its part's own margin is right
+whatever else the student wrote. Everything else is left to :mod:`coursework.marking.marking`, whose marks
+these are.
 """
 
 from __future__ import annotations
@@ -22,8 +23,8 @@ _SHOWN_OTHERWISE = {"*"}  #: what the echo of a unit has another sign for
 
 
 def plainly_right(sheets: Sequence[tuple[Variant, Mapping[str, Any]]]) -> list[dict[str, str]]:
-    """Return the right answers of each sheet by part, as they were read: ``12,5`` as ``12.5``. The columns are those of sheets
-    of one exercise whose keys were computed together."""
+    """Return the right answers of each sheet by part, as they were read: ``12,5`` as ``12.5``. The columns
+    are those of sheets of one exercise whose keys were computed together."""
     right: list[dict[str, str]] = [{} for _ in sheets]
     places: dict[CourseExercise, list[int]] = {}
     for place, (variant, _) in enumerate(sheets):

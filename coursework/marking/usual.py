@@ -25,11 +25,15 @@ if TYPE_CHECKING:
 NAMED = 3  #: errors that fit one answer; of more than these none is named
 _SHORT = 2  #: names of a formula that may be printed whole: it is a term of one factor
 _LONGEST = 4  #: names of a term that is printed
-NEAR = 0.35  #: half-widths from the value that a usual error, or a mistake made elsewhere, gives: of so many some are near to anything
+#: Half-widths from the value that a usual error, or a mistake made elsewhere, gives: of so many some are near
+#: to anything.
+NEAR = 0.35
 NEAR_HERE = 0.7  #: the same of a mistake about the asked quantity itself, of which there are few
 NEAR_DEGREES = 0.1  #: the same of a direction, of which fewer are far apart
 _LEAST = 0.02  #: half-widths within which rounding on the way brings whoever makes an error
-_BY_CHANCE = 1.2  #: half-widths of a number that all the errors in play may take together: the more there are, the nearer each must be
+#: Half-widths of a number that all the errors in play may take together: the more there are, the nearer each
+#: must be.
+_BY_CHANCE = 1.2
 _FEW = 3  #: digits of an answer that was rounded
 _SAME = 1e-9  #: of a value: what two ways to compute it may differ by
 
@@ -49,8 +53,8 @@ def usual_errors_that_fit(
 ) -> list[Fit]:
     """Return the usual errors that give an answer, of several that give the same value the first.
 
-    None that is made in a quantity which was answered: what follows from that answer is another matter. None that
-    would have changed an answer that is ``right``.
+    None that is made in a quantity which was answered: what follows from that answer is another matter. None
+    that would have changed an answer that is ``right``.
     """
     quantity = judged_by.quantity
     if not part.sort.is_scalar or part.judge:
@@ -76,7 +80,8 @@ def usual_errors_that_fit(
 def own_errors_that_fit(
     key: Key, part: Part, reading: Reading, judged_by: Part, own_answers: Mapping[str, Any]
 ) -> list[Fit]:
-    """Return the usual errors in a quantity's own formula that give an answer from a student's ``own_answers`` earlier ones."""
+    """Return the usual errors in a quantity's own formula that give an answer from a student's
+    ``own_answers`` earlier ones."""
     if not part.sort.is_scalar or part.judge:
         return []
     errors, values = key.usual_ways_from(judged_by.quantity, own_answers)
@@ -94,7 +99,8 @@ def _near(
     *,
     is_own: bool = False,
 ) -> list[Fit]:
-    """Return the errors near whose values an answer is, of those that may be; of several that give one value the first.
+    """Return the errors near whose values an answer is, of those that may be; of several that give one value
+    the first.
 
     What is computed from a student's own written answers is moved by their rounding.
     """
@@ -121,7 +127,8 @@ def _near(
 
 
 def last_digit(part: Part, answer: Any) -> float:
-    """Half of the last digit of an answer of few digits, in its unit: by so much it may be off; 0 for one of more."""
+    """Half of the last digit of an answer of few digits, in its unit: by so much it may be off; 0 for one of
+    more."""
     if not part.sort.is_number or float(f"{answer:.{_FEW}g}") != answer:
         return 0.0
     return float(half_step(answer, _FEW))
@@ -135,7 +142,8 @@ def nearness(part: Part, key: Key, judged_by: Part, answer: Any, usual: float) -
 
 
 def _close(part: Part, key: Key, judged_by: Part, values: np.ndarray, answer: float) -> np.ndarray:
-    """Return the places of the values within whose widest margin an answer lies: few, whose distances are then computed."""
+    """Return the places of the values within whose widest margin an answer lies: few, whose distances are
+    then computed."""
     width = key.half_width(judged_by)
     with np.errstate(all="ignore"):
         digit = 0.0 if part.sort.turn else 10.0 ** (1 - key.rules.digits) * np.abs(values)
@@ -215,7 +223,8 @@ def why(variant: Variant, error: UsualError, quantity: str) -> str:
 
 
 def _may_be_shown(about: ast.expr, formula: Collection[str], seen: Collection[str]) -> bool:
-    """Return whether a term holds only symbols that the student knows, and not all of a formula of several."""
+    """Return whether a term holds only symbols that the student knows, and not all of a formula of
+    several."""
     names = {node.id for node in ast.walk(about) if isinstance(node, ast.Name)} & {*formula}
     return (
         names <= {*seen} and (len(names) < len(formula) or len(formula) <= _SHORT) and len(names) <= _LONGEST

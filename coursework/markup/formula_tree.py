@@ -17,44 +17,143 @@ from coursework.markup.number_holes import FIRST_HOLE, LAST_HOLE
 
 # Each symbol is its Unicode character and what it is, for spacing.
 LETTERS = {
-    "alpha": "α", "beta": "β", "gamma": "γ", "delta": "δ", "epsilon": "ϵ", "varepsilon": "ε", "zeta": "ζ",
-    "eta": "η", "theta": "θ", "vartheta": "ϑ", "iota": "ι", "kappa": "κ", "lambda": "λ", "mu": "μ", "nu": "ν",
-    "xi": "ξ", "pi": "π", "rho": "ρ", "sigma": "σ", "tau": "τ", "upsilon": "υ", "phi": "ϕ", "varphi": "φ",
-    "chi": "χ", "psi": "ψ", "omega": "ω", "Gamma": "Γ", "Delta": "Δ", "Theta": "Θ", "Lambda": "Λ", "Xi": "Ξ",
-    "Pi": "Π", "Sigma": "Σ", "Upsilon": "Υ", "Phi": "Φ", "Psi": "Ψ", "Omega": "Ω", "partial": "∂", "ell": "ℓ",
-}  # fmt: skip
+    "alpha": "α",
+    "beta": "β",
+    "gamma": "γ",
+    "delta": "δ",
+    "epsilon": "ϵ",
+    "varepsilon": "ε",
+    "zeta": "ζ",
+    "eta": "η",
+    "theta": "θ",
+    "vartheta": "ϑ",
+    "iota": "ι",
+    "kappa": "κ",
+    "lambda": "λ",
+    "mu": "μ",
+    "nu": "ν",
+    "xi": "ξ",
+    "pi": "π",
+    "rho": "ρ",
+    "sigma": "σ",
+    "tau": "τ",
+    "upsilon": "υ",
+    "phi": "ϕ",
+    "varphi": "φ",
+    "chi": "χ",
+    "psi": "ψ",
+    "omega": "ω",
+    "Gamma": "Γ",
+    "Delta": "Δ",
+    "Theta": "Θ",
+    "Lambda": "Λ",
+    "Xi": "Ξ",
+    "Pi": "Π",
+    "Sigma": "Σ",
+    "Upsilon": "Υ",
+    "Phi": "Φ",
+    "Psi": "Ψ",
+    "Omega": "Ω",
+    "partial": "∂",
+    "ell": "ℓ",
+}
 ORDINARY = {
-    "infty": "∞", "circ": "∘", "prime": "′", "angle": "∠", "degree": "°", "ldots": "…", "dots": "…",
-    "cdots": "⋯", "emptyset": "∅", "forall": "∀", "exists": "∃", "%": "%",
-}  # fmt: skip
+    "infty": "∞",
+    "circ": "∘",
+    "prime": "′",
+    "angle": "∠",
+    "degree": "°",
+    "ldots": "…",
+    "dots": "…",
+    "cdots": "⋯",
+    "emptyset": "∅",
+    "forall": "∀",
+    "exists": "∃",
+    "%": "%",
+}
 BINARY = {
-    "cdot": "⋅", "times": "×", "pm": "±", "mp": "∓", "wedge": "∧", "cap": "∩", "cup": "∪", "oplus": "⊕",
+    "cdot": "⋅",
+    "times": "×",
+    "pm": "±",
+    "mp": "∓",
+    "wedge": "∧",
+    "cap": "∩",
+    "cup": "∪",
+    "oplus": "⊕",
     "div": "÷",
-}  # fmt: skip
+}
 RELATIONS = {
-    "neq": "≠", "ne": "≠", "le": "≤", "leq": "≤", "ge": "≥", "geq": "≥", "ll": "≪", "gg": "≫", "lt": "<",
-    "gt": ">", "approx": "≈", "simeq": "≃", "sim": "∼", "equiv": "≡", "to": "→", "rightarrow": "→",
-    "mapsto": "↦", "Rightarrow": "⇒", "Leftrightarrow": "⇔", "iff": "⇔", "in": "∈", "notin": "∉",
-    "subset": "⊂", "parallel": "∥", "perp": "⟂", "propto": "∝",
-}  # fmt: skip
+    "neq": "≠",
+    "ne": "≠",
+    "le": "≤",
+    "leq": "≤",
+    "ge": "≥",
+    "geq": "≥",
+    "ll": "≪",
+    "gg": "≫",
+    "lt": "<",
+    "gt": ">",
+    "approx": "≈",
+    "simeq": "≃",
+    "sim": "∼",
+    "equiv": "≡",
+    "to": "→",
+    "rightarrow": "→",
+    "mapsto": "↦",
+    "Rightarrow": "⇒",
+    "Leftrightarrow": "⇔",
+    "iff": "⇔",
+    "in": "∈",
+    "notin": "∉",
+    "subset": "⊂",
+    "parallel": "∥",
+    "perp": "⟂",
+    "propto": "∝",
+}
 BIG = {"int": "∫", "sum": "∑", "prod": "∏", "oint": "∮"}
 OPENING = {"lvert": "|", "lVert": "‖", "{": "{", "langle": "⟨", "lfloor": "⌊", "lceil": "⌈", "lbrack": "["}
 CLOSING = {"rvert": "|", "rVert": "‖", "}": "}", "rangle": "⟩", "rfloor": "⌋", "rceil": "⌉", "rbrack": "]"}
 BARS = {"vert": "|", "Vert": "‖", "|": "‖", "mid": "|"}
 FUNCTIONS = (
-    "sin", "cos", "tan", "cot", "arcsin", "arccos", "arctan", "sinh", "cosh", "tanh", "exp", "ln", "log",
-    "det", "dim", "rank", "arg",
-)  # fmt: skip
+    "sin",
+    "cos",
+    "tan",
+    "cot",
+    "arcsin",
+    "arccos",
+    "arctan",
+    "sinh",
+    "cosh",
+    "tanh",
+    "exp",
+    "ln",
+    "log",
+    "det",
+    "dim",
+    "rank",
+    "arg",
+)
 LIMITS = ("max", "min", "lim", "sup", "inf")
 SPACES = {",": 3, ":": 4, ";": 5, "!": -3, " ": 4, "quad": 18, "qquad": 36}  #: eighteenths of an em
 ACCENTS = {
-    "dot": "˙", "ddot": "¨", "dddot": "⃛", "vec": "→", "overrightarrow": "→", "overline": "‾", "bar": "‾",
-    "hat": "^", "tilde": "~", "underline": "_",
-}  # fmt: skip
+    "dot": "˙",
+    "ddot": "¨",
+    "dddot": "⃛",
+    "vec": "→",
+    "overrightarrow": "→",
+    "overline": "‾",
+    "bar": "‾",
+    "hat": "^",
+    "tilde": "~",
+    "underline": "_",
+}
 STYLES = {
-    "mathrm": "upright", "mathbf": "bold", "boldsymbol": "slanted bold", "mathbb": "blackboard",
+    "mathrm": "upright",
+    "mathbf": "bold",
+    "boldsymbol": "slanted bold",
+    "mathbb": "blackboard",
     "mathcal": "calligraphic",
-}  # fmt: skip
+}
 FRACTIONS = {"frac": None, "dfrac": True, "tfrac": False}
 GRIDS = ("cases", "aligned", "pmatrix", "bmatrix", "vmatrix", "matrix")
 STRUCTURE = ("sqrt", "operatorname", "text", "num", "left", "right", "begin", "end", "displaystyle")
@@ -77,12 +176,27 @@ _SYMBOLS: dict[str, tuple[str, str]] = {
 MACROS = frozenset((*_SYMBOLS, *FUNCTIONS, *LIMITS, *SPACES, *ACCENTS, *STYLES, *FRACTIONS, *STRUCTURE, "\\"))
 
 _CHARACTERS = {
-    "+": ("+", "binary"), "-": ("−", "binary"), "*": ("∗", "binary"), "/": ("/", "ordinary"),
-    "=": ("=", "relation"), "<": ("<", "relation"), ">": (">", "relation"), ":": (":", "relation"),
-    "(": ("(", "opening"), "[": ("[", "opening"), ")": (")", "closing"), "]": ("]", "closing"),
-    "|": ("|", "bar"), ",": (",", "punctuation"), ";": (";", "punctuation"), ".": (".", "punctuation"),
-    "!": ("!", "closing"), "?": ("?", "closing"), "°": ("°", "ordinary"), "·": ("⋅", "binary"),
-}  # fmt: skip
+    "+": ("+", "binary"),
+    "-": ("−", "binary"),
+    "*": ("∗", "binary"),
+    "/": ("/", "ordinary"),
+    "=": ("=", "relation"),
+    "<": ("<", "relation"),
+    ">": (">", "relation"),
+    ":": (":", "relation"),
+    "(": ("(", "opening"),
+    "[": ("[", "opening"),
+    ")": (")", "closing"),
+    "]": ("]", "closing"),
+    "|": ("|", "bar"),
+    ",": (",", "punctuation"),
+    ";": (";", "punctuation"),
+    ".": (".", "punctuation"),
+    "!": ("!", "closing"),
+    "?": ("?", "closing"),
+    "°": ("°", "ordinary"),
+    "·": ("⋅", "binary"),
+}
 
 
 @dataclass(frozen=True)

@@ -58,25 +58,71 @@ _STYLES = {
 }
 _FRACTIONS = {None: "frac", True: "dfrac", False: "tfrac"}
 _NAMES = frozenset(
-    ("sin", "cos", "tan", "cot", "arcsin", "arccos", "arctan", "sinh", "cosh", "tanh", "exp", "ln", "log",
-     "det", "dim", "arg", "max", "min", "lim", "sup", "inf")
-)  # fmt: skip
+    (
+        "sin",
+        "cos",
+        "tan",
+        "cot",
+        "arcsin",
+        "arccos",
+        "arctan",
+        "sinh",
+        "cosh",
+        "tanh",
+        "exp",
+        "ln",
+        "log",
+        "det",
+        "dim",
+        "arg",
+        "max",
+        "min",
+        "lim",
+        "sup",
+        "inf",
+    )
+)
 
 # -- plain text -------------------------------------------------------------------------------------
 
 _MARKS = {
-    "\\": r"\textbackslash{}", "^": r"\textasciicircum{}", "~": r"\textasciitilde{}", "<": r"\textless{}",
-    ">": r"\textgreater{}", "|": r"\textbar{}", '"': r"\textquotedbl{}", "`": r"\textasciigrave{}",
-    "'": r"\textquotesingle{}", "[": "{[}", "]": "{]}", "*": "{*}", "-": "{-}", ",": "{,}",
+    "\\": r"\textbackslash{}",
+    "^": r"\textasciicircum{}",
+    "~": r"\textasciitilde{}",
+    "<": r"\textless{}",
+    ">": r"\textgreater{}",
+    "|": r"\textbar{}",
+    '"': r"\textquotedbl{}",
+    "`": r"\textasciigrave{}",
+    "'": r"\textquotesingle{}",
+    "[": "{[}",
+    "]": "{]}",
+    "*": "{*}",
+    "-": "{-}",
+    ",": "{,}",
     **{mark: f"\\{mark}" for mark in "{}$&#_%"},
-    "\N{NO-BREAK SPACE}": "~", "\N{NARROW NO-BREAK SPACE}": r"\,", "\t": " ",
-    "–": r"\textendash{}", "—": r"\textemdash{}", "…": r"\dots{}", "‘": r"\textquoteleft{}",
-    "’": r"\textquoteright{}", "“": r"\textquotedblleft{}", "”": r"\textquotedblright{}", "•": r"\textbullet{}",
-    "€": r"\texteuro{}", "√": r"\ensuremath{\surd}", "∞": r"\ensuremath{\infty}",
-    **{raised: rf"\textsuperscript{{{digit}}}" for raised, digit in zip("⁰⁴⁵⁶⁷⁸⁹⁺⁻", "0456789+-", strict=True)},
+    "\N{NO-BREAK SPACE}": "~",
+    "\N{NARROW NO-BREAK SPACE}": r"\,",
+    "\t": " ",
+    "–": r"\textendash{}",
+    "—": r"\textemdash{}",
+    "…": r"\dots{}",
+    "‘": r"\textquoteleft{}",
+    "’": r"\textquoteright{}",
+    "“": r"\textquotedblleft{}",
+    "”": r"\textquotedblright{}",
+    "•": r"\textbullet{}",
+    "€": r"\texteuro{}",
+    "√": r"\ensuremath{\surd}",
+    "∞": r"\ensuremath{\infty}",
+    **{
+        raised: rf"\textsuperscript{{{digit}}}"
+        for raised, digit in zip("⁰⁴⁵⁶⁷⁸⁹⁺⁻", "0456789+-", strict=True)
+    },
     **{low: rf"\textsubscript{{{digit}}}" for low, digit in zip("₀₁₂₃₄₅₆₇₈₉", "0123456789", strict=True)},
-    "⁻": r"\textsuperscript{\textminus}", "−": r"\textminus{}",
-}  # fmt: skip
+    "⁻": r"\textsuperscript{\textminus}",
+    "−": r"\textminus{}",
+}
 #: What the T1 and TS1 fonts draw: Latin letters of western and central Europe, and signs.
 _DRAWN = re.compile(
     "[ -~\n\u00a1-\u00ac\u00ae-\u0125\u0128-\u0137\u0139-\u013e\u0141-\u0148\u014a-\u0165\u0168-\u017e]"
@@ -110,8 +156,8 @@ def _character(char: str) -> str:
 
 @lru_cache(maxsize=4096)
 def to_latex(tex: str, lang: str) -> str:
-    r"""Return the formula as LaTeX without dollars, its numbers written out: ``4{,}21`` where the language has
-    a comma."""
+    r"""Return the formula as LaTeX without dollars, its numbers written out: ``4{,}21`` where the language
+    has a comma."""
     return _latex(parse(tex), lang)
 
 

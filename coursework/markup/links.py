@@ -1,6 +1,8 @@
-"""Links in the texts of a course: to an exercise, to a lesson, a section or a numbered figure of one, and terms of an index.
+"""Links in the texts of a course: to an exercise, to a lesson, a section or a numbered figure of one, and
+terms of an index.
 
-``[the construction](exercise:two_circles)``, ``[positions](lesson:positions#3)``, ``[dead points](#index "dead point")``.
+``[the construction](exercise:two_circles)``, ``[positions](lesson:positions#3)``,
+``[dead points](#index "dead point")``.
 """
 
 from __future__ import annotations
@@ -11,7 +13,8 @@ from dataclasses import dataclass
 
 _LINK = re.compile(
     r"\[(?P<said>[^\[\]]+)\]\("
-    r"(?:(?P<kind>exercise|lesson|figure(?=:\w+#)):(?P<name>\w+)(?:#(?P<number>\d+(?:\.\d+)?))?|#(?P<mark>index|word|machine)(?:\s+\"(?P<entry>[^\"]*)\")?)\)"
+    r"(?:(?P<kind>exercise|lesson|figure(?=:\w+#)):(?P<name>\w+)(?:#(?P<number>\d+(?:\.\d+)?))?"
+    r"|#(?P<mark>index|word|machine)(?:\s+\"(?P<entry>[^\"]*)\")?)\)"
 )
 _VERBATIM = re.compile(r"(```.*?```|`[^`\n]*`)", re.DOTALL)
 
@@ -35,7 +38,8 @@ class TextLink:
 
     @property
     def anchor(self) -> str:
-        """Identifier of the section or figure in its lesson, such as ``section-3``; "" for the lesson itself."""
+        """Identifier of the section or figure in its lesson, such as ``section-3``; "" for the lesson
+        itself."""
         if not self.number:
             return ""
         return f"{'figure' if self.kind == 'figure' else 'section'}-{self.number}"

@@ -51,10 +51,12 @@ def no_image(source: str) -> BadStatement:
 _TYPST_MARKS = re.compile(r"([\\`*_$#<>@~=+/\[\]{}\"'|-])")
 
 
-#: Scripts and signs that the typesetter's own fonts draw: Latin, Greek, Cyrillic, Armenian, Georgian, punctuation,
-#: mathematics. Where a word is more than its letters, from right to left or by syllables, they have some of it only.
+#: Scripts and signs that the typesetter's own fonts draw: Latin, Greek, Cyrillic, Armenian, Georgian,
+#: punctuation, mathematics. Where a word is more than its letters, from right to left or by syllables, they
+#: have some of it only.
 _UNDRAWN = re.compile(
-    "[^ -~\u00a0-\u036f\u0370-\u03ff\u0400-\u04ff\u0510-\u0513\u051a-\u051d\u0531-\u0556\u0559-\u058a\u10d0-\u10ff"
+    "[^ "
+    "-~\u00a0-\u036f\u0370-\u03ff\u0400-\u04ff\u0510-\u0513\u051a-\u051d\u0531-\u0556\u0559-\u058a\u10d0-\u10ff"
     "\u1e00-\u1f15\u1f18-\u1f1d\u1f20-\u1f45\u1f48-\u1f4d\u1f50-\u1f57\u1f59\u1f5b\u1f5d\u1f5f-\u1f7d\u1f80-\u1fb4"
     "\u1fb6-\u1fc4\u1fc6-\u1fd3\u1fd6-\u1fdb\u1fdd-\u1fef\u1ff2-\u1ff4\u1ff6-\u1ffe"
     "\u2000-\u2040\u2070-\u209f\u20a0-\u20bf\u2100-\u211e\u2126-\u214f\u20d0-\u20f0\u2190-\u23ff\u2500-\u25ff\u27c0-\u2aff"
@@ -120,7 +122,8 @@ _WHOLE = 24  #: characters of a formula written out that a line of text does not
 
 @lru_cache(maxsize=4096)
 def typst_formula(tex: str, lang: str, *, display: bool = False, number: str = "") -> str:
-    """Return a formula as Typst markup, with its words as alternative text; a displayed one may bear a number.
+    """Return a formula as Typst markup, with its words as alternative text; a displayed one may bear a
+    number.
 
     The semicolon ends the call: a parenthesis that follows it in the text is text.
     """
@@ -157,7 +160,8 @@ def typst_value(markdown: str, lang: str) -> str:
 
 
 def _block(node: SyntaxTreeNode, lang: str) -> str:
-    """Return a node's children as the body of a block: a list begins a line, since Typst nests items by their column."""
+    """Return a node's children as the body of a block: a list begins a line, since Typst nests items by their
+    column."""
     begins = node.children and node.children[0].type in ("bullet_list", "ordered_list")
     return "\n" * bool(begins) + "".join(_typst(child, lang) for child in node.children).strip()
 

@@ -38,7 +38,8 @@ def to_mathml(tex: str, lang: str, display: bool = False) -> str:
     layout = "block" if display else "inline"
     label = escape(spoken(tex, lang))
     body = _mathml_body(tex, lang)
-    # A displayed formula, or a long one in a text, may be wider than a telephone: it scrolls, so a keyboard must reach it.
+    # A displayed formula, or a long one in a text, may be wider than a telephone: it scrolls, so a keyboard
+    # must reach it.
     is_long = len(_TAGS.sub("", body)) > _FITS
     reached = ' tabindex="0"' if display else ' class="long" tabindex="0"' if is_long else ""
     return f'<math display="{layout}" alttext="{label}"{reached}>{body}</math>'
@@ -101,7 +102,8 @@ def _is_name(node: Node) -> bool:
 
 
 def _thin_space_between(left: Node, right: Node) -> bool:
-    """Return whether a thin space separates a function's name from a factor or an argument without brackets."""
+    """Return whether a thin space separates a function's name from a factor or an argument without
+    brackets."""
 
     def is_term(node: Node, bracket: str) -> bool:
         if isinstance(node, Symbol):
@@ -242,6 +244,11 @@ def _mathml(node: Node, lang: str) -> str:
 
 
 _MATHML_ACCENTS = {
-    "dot": ("˙", "false"), "ddot": ("¨", "false"), "dddot": ("˙˙˙", "false"), "overline": ("‾", "true"),
-    "bar": ("‾", "false"), "hat": ("^", "false"), "tilde": ("~", "false"),
-}  # fmt: skip
+    "dot": ("˙", "false"),
+    "ddot": ("¨", "false"),
+    "dddot": ("˙˙˙", "false"),
+    "overline": ("‾", "true"),
+    "bar": ("‾", "false"),
+    "hat": ("^", "false"),
+    "tilde": ("~", "false"),
+}

@@ -13,7 +13,8 @@ from functools import lru_cache, wraps
 from coursework.errors import BadStatement
 from coursework.language.numbers import localise
 
-#: Characters that stand for the digits of a number, the first for the first; they mean nothing else to Unicode.
+#: Characters that stand for the digits of a number, the first for the first; they mean nothing else to
+#: Unicode.
 FIRST_HOLE, LAST_HOLE = "\ue000", "\uf8ff"
 _MOST = ord(LAST_HOLE) - ord(FIRST_HOLE)
 
@@ -28,8 +29,8 @@ Turn = Callable[[str, str], str]
 def once_for_all_numbers(turn: Turn) -> Turn:
     """Return a cached version of a formula printer, which parses a formula once for all its numbers.
 
-    Where ``turn`` makes more of a number's digits than to print them (small ones of an index, say), it is called for
-    each formula.
+    Where ``turn`` makes more of a number's digits than to print them (small ones of an index, say), it is
+    called for each formula.
     """
 
     @lru_cache(maxsize=4096)

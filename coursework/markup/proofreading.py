@@ -29,7 +29,8 @@ def pair_dollars(markdown: str, position: Callable[[str], str]) -> None:
             line = paragraph.strip().split("\n")[0]
             quoted = line if len(line) <= _SHOWN else f"{line[:_SHOWN]}…"
             raise BadStatement(
-                f"{position(line)}: the paragraph “{quoted}” has {count} $, and a formula stands between two; "
+                f"{position(line)}: the paragraph “{quoted}” has {count} $, and a formula stands "
+                "between two; "
                 r"the sign itself is written \$"
             )
 

@@ -15,8 +15,8 @@ from coursework.markup.markdown import to_notebook_markdown, to_text
 class SvgPicture:
     """SVG drawing with its description for readers who cannot see it.
 
-    ``page``: a web page that shows the same and more, under a line ``opens``; front ends that trust no notebook leave it out.
-    ``caption``: what stands below it, in the Markdown of statements.
+    ``page``: a web page that shows the same and more, under a line ``opens``; front ends that trust no
+    notebook leave it out. ``caption``: what stands below it, in the Markdown of statements.
     """
 
     svg: str
@@ -32,7 +32,10 @@ class SvgPicture:
         image = f'<img src="data:image/svg+xml;base64,{data}" alt="{escape(self.said)}">'
         if not self.page:
             return image
-        frame = f'<iframe srcdoc="{escape(self.page)}" title="{escape(self.said)}" loading="lazy" width="100%" height="640"></iframe>'
+        frame = (
+            f'<iframe srcdoc="{escape(self.page)}" title="{escape(self.said)}" loading="lazy" width="100%" '
+            'height="640"></iframe>'
+        )
         return f"{image}<details><summary>{escape(self.opens)}</summary>{frame}</details>"
 
 

@@ -88,8 +88,10 @@ def _spoken(node: Node, lang: str, say: dict) -> str:
         case Fence(left, body, right):
             return f" {say['symbols'].get(left, left)} {of(body)} {say['symbols'].get(right, right)} "
         case Grid(kind, rows):
-            lines = ["; ".join([", ".join(map(of, row)) if kind != "aligned" else " ".join(map(of, row))])
-                     for row in rows]  # fmt: skip
+            lines = [
+                "; ".join([", ".join(map(of, row)) if kind != "aligned" else " ".join(map(of, row))])
+                for row in rows
+            ]
             return phrase("grid_" + ("matrix" if kind.endswith("matrix") else kind), "; ".join(lines))
     raise TypeError(node)
 

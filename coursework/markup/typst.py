@@ -35,9 +35,17 @@ _TYPST_STYLES = {
     "display": "display({})",
 }
 _TYPST_ACCENTS = {
-    "dot": "dot", "ddot": "dot.double", "dddot": "dot.triple", "vec": "arrow", "overrightarrow": "arrow",
-    "overline": "overline", "bar": "macron", "hat": "hat", "tilde": "tilde", "underline": "underline",
-}  # fmt: skip
+    "dot": "dot",
+    "ddot": "dot.double",
+    "dddot": "dot.triple",
+    "vec": "arrow",
+    "overrightarrow": "arrow",
+    "overline": "overline",
+    "bar": "macron",
+    "hat": "hat",
+    "tilde": "tilde",
+    "underline": "underline",
+}
 _TYPST_GRIDS = {"pmatrix": '"("', "bmatrix": '"["', "vmatrix": '"|"', "matrix": "#none"}
 
 

@@ -11,8 +11,8 @@ A solution states its mechanism once, in the names of its quantities::
         ),
     )
 
-A point that bodies share is a pin. From this follow mobility, the motion of every point, what the drive must supply,
-what the joints bear, friction, sticking and jamming, and the motion in time.
+A point that bodies share is a pin. From this follow mobility, the motion of every point, what the drive must
+supply, what the joints bear, friction, sticking and jamming, and the motion in time.
 """
 
 from coursework.mechanics.statement import GROUND, Body, Gear, Load, Mechanism, Slide

@@ -1,8 +1,9 @@
 """Joint reactions: three equations a body, for every instant at once.
 
-The unknowns are the forces of the pins on the body that they are named for (x and y), of the slides on the sliding body
-(across the guide, to the left of its direction, and a moment), of the gears on the first wheel (along the common tangent,
-to the left as seen from its centre), and the effort of the drive. Newtons and newton metres.
+The unknowns are the forces of the pins on the body that they are named for (x and y), of the slides on the
+sliding body (across the guide, to the left of its direction, and a moment), of the gears on the first wheel
+(along the common tangent, to the left as seen from its centre), and the effort of the drive. Newtons and
+newton metres.
 """
 
 from __future__ import annotations

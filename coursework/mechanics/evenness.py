@@ -39,7 +39,8 @@ class Evenness:
         if (missing := np.isnan(self.efforts)).any():
             at = 360.0 * np.flatnonzero(missing)[0] / len(self.efforts)
             raise Undefined(
-                "a flywheel is sized over a whole turn; here the drive's effort does not exist at {missing} of {count} angles, first at {at:g} degrees",
+                "a flywheel is sized over a whole turn; here the drive's effort does not exist at "
+                "{missing} of {count} angles, first at {at:g} degrees",
                 missing=int(missing.sum()),
                 count=len(missing),
                 at=at,

@@ -1,7 +1,7 @@
 """Forces on a mechanism: the drive's effort by virtual power, and joint reactions on request.
 
-Nothing is computed that no effect needs: without inertia no acceleration, without friction no iteration, without a
-question about joints no equilibrium.
+Nothing is computed that no effect needs: without inertia no acceleration, without friction no iteration,
+without a question about joints no equilibrium.
 """
 
 from __future__ import annotations
@@ -39,8 +39,8 @@ class ForceResults:
 class Forces:
     """Forces on a mechanism.
 
-    ``downwards``: the acceleration of gravity, m/s^2, complex; 0 without the effect. ``inertia``: whether masses count;
-    ``flywheel``: kg m^2 on the driver's shaft.
+    ``downwards``: the acceleration of gravity, m/s^2, complex; 0 without the effect. ``inertia``: whether
+    masses count; ``flywheel``: kg m^2 on the driver's shaft.
     """
 
     linkage: Linkage

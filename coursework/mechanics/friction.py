@@ -1,13 +1,14 @@
 """Coulomb friction in slides and pins: the bearing side of a guide, and jamming.
 
-What rubs is a *contact*: a slide at its point, the two edges of a long slide, or a pin's journal. A contact bears a
-normal force s; friction there has the size f |s| (f rho |s|, as a moment, in a pin of radius rho), against the motion. Without
-friction the contacts bear s0; with it
+What rubs is a *contact*: a slide at its point, the two edges of a long slide, or a pin's journal. A contact
+bears a normal force s; friction there has the size f |s| (f rho |s|, as a moment, in a pin of radius rho),
+against the motion. Without friction the contacts bear s0; with it
 
     s = s0 - C w,    w = sign of the motion * f * |s|,
 
-where C says what unit friction at one contact changes at another. The solution wanted is the one that grows out of s0 as
-friction grows from nothing: it ends where the equations become singular. There, and beyond, the mechanism jams.
+where C says what unit friction at one contact changes at another. The solution wanted is the one that grows
+out of s0 as friction grows from nothing: it ends where the equations become singular. There, and beyond, the
+mechanism jams.
 """
 
 from __future__ import annotations
@@ -132,7 +133,8 @@ def contacts(linkage: Linkage, friction: Mapping[str, Any]) -> tuple[Contact, ..
             results += _of_slide(slides.get(f"{name} slide") or slides[name], coefficient)
         elif name in pins:
             raise WrongValue(
-                '{name} is a pin: its friction has the radius of its journal, too: {name} = {{ coefficient = {given}, radius = "10 mm" }}',
+                "{name} is a pin: its friction has the radius of its journal, too: {name} = {{ "
+                'coefficient = {given}, radius = "10 mm" }}',
                 name=name,
                 given=given,
             )

@@ -1,7 +1,7 @@
 """Mechanism with its numbers: positions in metres as complex numbers, bodies by index.
 
-The ground stands last in every list of bodies, so that its index is -1. Coordinates are the driver's angle, index 0,
-and the angles that follow from it, from 1 on; a body that never turns has none.
+The ground stands last in every list of bodies, so that its index is -1. Coordinates are the driver's angle,
+index 0, and the angles that follow from it, from 1 on; a body that never turns has none.
 """
 
 from __future__ import annotations
@@ -260,6 +260,7 @@ class Linkage:
         if self.mechanism.mobility != 1:
             counts = (len(self.mechanism.bodies), len(self.pins) + len(self.slides), len(self.gears))
             raise BadCourse(
-                f"MECHANISM has {self.mechanism.mobility} degrees of freedom, a driver moves 1: 3 x {counts[0]} bodies, "
+                f"MECHANISM has {self.mechanism.mobility} degrees of freedom, a driver moves 1: 3 x "
+                f"{counts[0]} bodies, "
                 f"less 2 x {counts[1]} pins and slides, less {counts[2]} gears"
             )

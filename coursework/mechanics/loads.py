@@ -72,7 +72,8 @@ class AppliedLoad:
             )
         if load.during != "always" and load.against and not self.is_moment and self._guide is None:
             raise WrongValue(
-                "{place} has no strokes: it neither slides on the ground nor turns about a fixed point; a load on it acts always, or along an angle of its own",
+                "{place} has no strokes: it neither slides on the ground nor turns about a fixed "
+                "point; a load on it acts always, or along an angle of its own",
                 place=load.on,
             )
 
@@ -296,7 +297,8 @@ def strokes(acting: AppliedLoad, forward: float, backward: float) -> Strokes:
         return Strokes(1 if during == "forward" else -1, really=True)
     if abs(forward - backward) < _EVEN:
         raise WrongValue(
-            "the load on {place} acts during the {during}, the longer one or the other: here both take as long; say during = 'forward' or 'backward' (along its line)",
+            "the load on {place} acts during the {during}, the longer one or the other: here both take "
+            "as long; say during = 'forward' or 'backward' (along its line)",
             place=acting.load.on,
             during=Message(during),
         )

@@ -1,9 +1,9 @@
 """Motion of a mechanism by its driver: positions, with first and second derivatives by the driver's angle.
 
-Angles follow from the exercise; all else from the joints: a pin holds two points together, a slide lets one go along
-the guide alone, a gear rolls. The equations are linear in the derivatives, and solved at every instant at once. Where the
-exercise has formulas for the rates of all angles, these are taken instead: near a dead point they keep the digits that a
-linear system of nearly parallel bars loses.
+Angles follow from the exercise; all else from the joints: a pin holds two points together, a slide lets one
+go along the guide alone, a gear rolls. The equations are linear in the derivatives, and solved at every
+instant at once. Where the exercise has formulas for the rates of all angles, these are taken instead: near a
+dead point they keep the digits that a linear system of nearly parallel bars loses.
 """
 
 from __future__ import annotations
@@ -16,8 +16,8 @@ import numpy as np
 
 from coursework.mechanics.linkage import NONE, BodyPoint, GearJoint, Linkage, SlideJoint
 
-#: First (1) or second (2) derivatives of the unknown coordinates by the driver's angle, shape ``(unknowns, n)``, as an
-#: exercise's own formulas give them; None where they do not give all.
+#: First (1) or second (2) derivatives of the unknown coordinates by the driver's angle, shape
+#: ``(unknowns, n)``, as an exercise's own formulas give them; None where they do not give all.
 Stated: TypeAlias = Callable[[int], np.ndarray | None]
 
 
@@ -35,8 +35,9 @@ class Stance:
     shifts
         Where the origins of free bodies lie, by body, metres, shape ``(n,)``.
 
-    Lengths are in metres and complex, x to the right and y up; derivatives are by the driver's angle in radians, each
-    computed when it is first asked for. NaN where the mechanism does not close or stands in a dead point.
+    Lengths are in metres and complex, x to the right and y up; derivatives are by the driver's angle in
+    radians, each computed when it is first asked for. NaN where the mechanism does not close or stands in a
+    dead point.
     """
 
     def __init__(
@@ -137,7 +138,8 @@ class Stance:
 
     @cached_property
     def _conditions(self) -> np.ndarray:
-        """Coefficients of the joint equations, linear in the rates: shape ``(conditions, coordinates, n)``."""
+        """Coefficients of the joint equations, linear in the rates: shape
+        ``(conditions, coordinates, n)``."""
         rows = []
         for pin in self.linkage.pins:
             if pin.closes:

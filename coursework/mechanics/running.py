@@ -1,9 +1,10 @@
 """Motion of a mechanism in time under its drive, with sticking and release.
 
-One degree of freedom: I q'' + h q'^2 + g + loads + friction = what the drive gives. The functions of the driver's angle
-in it are tabulated over the turn. The motion goes in *phases*, between the places where a rubbing joint or a loaded point
-turns back, so that within each the equation is smooth. At rest the mechanism stays while the drive lies between the
-efforts that would move it either way, and leaves on the side that the drive exceeds.
+One degree of freedom: I q'' + h q'^2 + g + loads + friction = what the drive gives. The functions of the
+driver's angle in it are tabulated over the turn. The motion goes in *phases*, between the places where a
+rubbing joint or a loaded point turns back, so that within each the equation is smooth. At rest the mechanism
+stays while the drive lies between the efforts that would move it either way, and leaves on the side that the
+drive exceeds.
 """
 
 from __future__ import annotations
@@ -248,7 +249,8 @@ class Running:
             rubbed = self._rubbed(state, values, sizes, signs)
             if not math.isfinite(rubbed):
                 raise Undefined(
-                    "the mechanism jams at {angle:.6g} degrees of its driver: its friction grows faster than what overcomes it",
+                    "the mechanism jams at {angle:.6g} degrees of its driver: its friction grows "
+                    "faster than what overcomes it",
                     angle=math.degrees(angle) % 360,
                 )
             lacking -= rubbed
@@ -263,7 +265,8 @@ class Running:
         self.work += self.cost
         if self.work > MOST_WORK:
             raise Undefined(
-                "the motion takes more than {most} evaluations of its equation, by {angle:.6g} degrees; give a shorter duration",
+                "the motion takes more than {most} evaluations of its equation, by {angle:.6g} "
+                "degrees; give a shorter duration",
                 most=MOST_WORK // self.cost,
                 angle=math.degrees(angle),
             )
@@ -498,11 +501,19 @@ class Running:
         if math.isfinite(position):
             ends.append(_ending(lambda _, y: (y[0] - position) * direction, 1.0))
         solved = solve_ivp(
-            derivative, (t, duration), state, method="DOP853", rtol=rtol, atol=scales, dense_output=True, events=ends
-        )  # fmt: skip
+            derivative,
+            (t, duration),
+            state,
+            method="DOP853",
+            rtol=rtol,
+            atol=scales,
+            dense_output=True,
+            events=ends,
+        )
         if solved.status < 0:
             raise Undefined(
-                "the motion stops at t = {t:.6g} s, at {angle:.6g} degrees: the acceleration grows without bound, since hardly any inertia resists there; give the crank one",
+                "the motion stops at t = {t:.6g} s, at {angle:.6g} degrees: the acceleration grows "
+                "without bound, since hardly any inertia resists there; give the crank one",
                 t=solved.t[-1],
                 angle=math.degrees(solved.y[0, -1]),
             )

@@ -1,7 +1,7 @@
 """Statement of a mechanism: its bodies, the position of each one's frame, and the joints.
 
-A place is a quantity's name, a number, or a function of quantities: mm in the frame of the body that holds it, complex
-where it does not lie on the frame's x axis. Places do not move within their body.
+A place is a quantity's name, a number, or a function of quantities: mm in the frame of the body that holds
+it, complex where it does not lie on the frame's x axis. Places do not move within their body.
 """
 
 from __future__ import annotations
@@ -30,8 +30,8 @@ class Body:
     name
         What the course calls it: ``"3"``.
     angle
-        The quantity that says how its frame is turned, degrees; a number for a body that never turns; None for a wheel
-        whose marks nobody looks at: only its rate counts, and a gear gives it.
+        The quantity that says how its frame is turned, degrees; a number for a body that never turns; None
+        for a wheel whose marks nobody looks at: only its rate counts, and a gear gives it.
     at
         The point where its frame has its origin, one of another body or of the ground.
     points
@@ -41,8 +41,9 @@ class Body:
     centre
         The point that is its centre of mass; the origin of its frame unless told.
     origin
-        For a body that slides alone hold, such as a Scotch yoke: where the origin of its frame lies in the ground's, mm, a
-        place that moves with the driver. ``at`` is then its own name of that point, which no other body holds.
+        For a body that slides alone hold, such as a Scotch yoke: where the origin of its frame lies in the
+        ground's, mm, a place that moves with the driver. ``at`` is then its own name of that point, which no
+        other body holds.
     """
 
     name: str
@@ -65,7 +66,8 @@ class Slide:
     """Body that slides on another along a line of it: at a point, in a direction of the guide's frame
     (degrees).
 
-    The two are turned alike. ``length`` (mm): a long slide bears on both of its edges; one without length at its point.
+    The two are turned alike. ``length`` (mm): a long slide bears on both of its edges; one without length at
+    its point.
     """
 
     at: str
@@ -95,11 +97,12 @@ class Gear:
 class Load:
     """Load on a point (``force``, N) or on a body (``moment``, N m): a quantity of the exercise, or a number.
 
-    Where bodies share the point, the last of them bears the force: the piston, not the rod; ``body`` may name another.
-    A force points along ``angle``, degrees from the ground's x axis; or, ``against`` the motion, the other way than its
-    point moves, and a moment the other way than its body turns. ``during``: ``"always"``, on the ``"working stroke"``
-    (the slower one) or the ``"return stroke"`` of what it acts on. ``table``: pairs of what ``by`` names, the driver's
-    angle or a position of the exercise, and of the load; between them it goes straight, by the angle around the turn.
+    Where bodies share the point, the last of them bears the force: the piston, not the rod; ``body`` may name
+    another. A force points along ``angle``, degrees from the ground's x axis; or, ``against`` the motion, the
+    other way than its point moves, and a moment the other way than its body turns. ``during``: ``"always"``,
+    on the ``"working stroke"`` (the slower one) or the ``"return stroke"`` of what it acts on. ``table``:
+    pairs of what ``by`` names, the driver's angle or a position of the exercise, and of the load; between
+    them it goes straight, by the angle around the turn.
     """
 
     on: str
@@ -126,13 +129,15 @@ class Pin:
 class Mechanism:
     """Bodies and joints, with the loads and the friction that the exercise itself states.
 
-    ``friction``: by joint (a point), a coefficient, for slides; for a pin, a pair of coefficient and radius (mm).
-    ``pushed``: the point of the slide along which a jack drives; without it, the drive turns the body of its angle.
+    ``friction``: by joint (a point), a coefficient, for slides; for a pin, a pair of coefficient and radius
+    (mm). ``pushed``: the point of the slide along which a jack drives; without it, the drive turns the body
+    of its angle.
 
     Raises
     ------
     BadCourse
-        A point that no body holds, a body of a name that is taken, a slide whose two bodies are not turned alike.
+        A point that no body holds, a body of a name that is taken, a slide whose two bodies are not turned
+        alike.
     """
 
     ground: Mapping[str, Place]
@@ -210,7 +215,8 @@ class Mechanism:
 
     @property
     def mobility(self) -> int:
-        """Degrees of freedom by the Chebyshev-Grübler count: 3 a body, less 2 a pin or slide, less 1 a gear."""
+        """Degrees of freedom by the Chebyshev-Grübler count: 3 a body, less 2 a pin or slide, less 1 a
+        gear."""
         return 3 * len(self.bodies) - 2 * (len(self.pins) + len(self.slides)) - len(self.gears)
 
     @property
@@ -271,17 +277,27 @@ class Mechanism:
         for body in self.bodies:
             if body.origin is not None:
                 if body.at in known_names:
-                    yield f"body {body.name!r} has an origin of its own, and {body.at!r} is a point of another body: a pin"
+                    yield (
+                        f"body {body.name!r} has an origin of its own, and {body.at!r} is a point of "
+                        "another body: a pin"
+                    )
             elif body.at not in known_names:
                 yield (
                     f"body {body.name!r} has its origin at {body.at!r}, which no body before it holds"
-                    f"{nearest(body.at, known_names)}; a body that slides alone hold says where it is: Body(…, origin=…)"
+                    f"{nearest(body.at, known_names)}; a body that slides alone hold says where it is: "
+                    "Body(…, origin=…)"
                 )
             known_names |= set(body.places)
             if body.angle is None and body.points:
-                yield f"body {body.name!r} has no angle: nothing says where its points {', '.join(body.points)} are"
+                yield (
+                    f"body {body.name!r} has no angle: nothing says where its points "
+                    f"{', '.join(body.points)} are"
+                )
             if body.centre and body.centre not in body.places:
-                yield f"the centre of body {body.name!r} is none of its points{nearest(body.centre, body.places)}"
+                yield (
+                    f"the centre of body {body.name!r} is none of its "
+                    f"points{nearest(body.centre, body.places)}"
+                )
         for slide in self.slides:
             yield from self._faults_of_slide(slide)
         if self.pushed and self.pushed not in (places := [slide.at for slide in self.slides]):
@@ -307,7 +323,8 @@ class Mechanism:
         fixed = [isinstance(t, (int, float)) for t in turned]
         if turned[0] != turned[1] and not all(fixed):
             yield (
-                f"the slide at {slide.at}: bodies {slide.of} and {slide.on} are turned alike, so by one quantity; "
+                f"the slide at {slide.at}: bodies {slide.of} and {slide.on} are turned alike, so by "
+                "one quantity; "
                 f"found {turned[0]!r} and {turned[1]!r}"
             )
 

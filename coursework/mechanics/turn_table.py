@@ -1,9 +1,9 @@
 """Functions of the driver's angle as a table over the turn, accurate to rounding: built by Fourier series,
 evaluated by polynomials.
 
-What is periodic and smooth is known everywhere once it is known at enough equal steps: the number of steps is doubled
-until the series has run out. Between finer steps, values and two derivatives of the series give a polynomial of the fifth
-degree, which costs little to read.
+What is periodic and smooth is known everywhere once it is known at enough equal steps: the number of steps is
+doubled until the series has run out. Between finer steps, values and two derivatives of the series give a
+polynomial of the fifth degree, which costs little to read.
 """
 
 from __future__ import annotations
@@ -18,8 +18,8 @@ _FIRST, _MOST = 64, 8192  #: steps at which a series is tried
 _RUN_OUT = 1e-13  #: of a function's size: what the last third of its series may hold
 _FINEST = 16384  #: steps of the polynomials
 
-#: From angles (n,) in radians to values (m, n), and what each of the m is measured by: the size of the terms that it is made
-#: of, so that what is nothing but rounding counts as nothing.
+#: From angles (n,) in radians to values (m, n), and what each of the m is measured by: the size of the terms
+#: that it is made of, so that what is nothing but rounding counts as nothing.
 Functions = Callable[[np.ndarray], tuple[np.ndarray, np.ndarray]]
 
 
@@ -57,7 +57,8 @@ class TurnTable:
     def _pieces(self, series: np.ndarray) -> None:
         """Compute the polynomials between fine steps, coefficients of shape ``(steps, 6, functions)``."""
         order = np.arange(series.shape[1])
-        # The error of a fifth-degree polynomial is its step to the sixth times the sixth derivative over 46080.
+        # The error of a fifth-degree polynomial is its step to the sixth times the sixth derivative over
+        # 46080.
         bend = (np.abs(series) * order**6.0).sum(axis=1) / np.maximum(np.abs(series).sum(axis=1), 1e-300)
         wanted = TURN * (float(bend.max(initial=1.0)) / (46080 * 1e-15)) ** (1 / 6)
         count = max(2 * (series.shape[1] - 1), 1 << math.ceil(math.log2(min(max(wanted, 64), _FINEST))))
@@ -68,13 +69,15 @@ class TurnTable:
         self._coefficients = np.ascontiguousarray(
             np.stack(
                 [
-                    f, f1, f2 / 2,
+                    f,
+                    f1,
+                    f2 / 2,
                     10 * rise - 4 * slope + bow / 2,
                     -15 * rise + 7 * slope - bow,
                     6 * rise - 3 * slope + bow / 2,
                 ]
             ).transpose(2, 1, 0)
-        )  # fmt: skip
+        )
 
     @staticmethod
     def _at_nodes(series: np.ndarray, count: int) -> np.ndarray:

@@ -1,7 +1,7 @@
 """Wrenches on the bodies: a force and a moment about the origin of each body's frame, at every instant.
 
-Newtons and newton metres. Inertia is one of them, by d'Alembert's principle, and comes in two: for one rad/s of the
-driver squared, and for one rad/s^2.
+Newtons and newton metres. Inertia is one of them, by d'Alembert's principle, and comes in two: for one rad/s
+of the driver squared, and for one rad/s^2.
 """
 
 from __future__ import annotations
@@ -19,7 +19,8 @@ GRAVITY = 9.81  #: m/s^2, unless a scene says another
 
 @dataclass
 class BodyWrenches:
-    """Forces, complex, and moments about the frames' origins, shape ``(bodies + 1, n)``; the ground's last."""
+    """Forces, complex, and moments about the frames' origins, shape ``(bodies + 1, n)``; the ground's
+    last."""
 
     stance: Stance
     forces: np.ndarray

@@ -1,4 +1,5 @@
-"""Cases of a choice as people name them: by the letter that the sheet prints, by place, in words, ticked among others."""
+"""Cases of a choice as people name them: by the letter that the sheet prints, by place, in words, ticked
+among others."""
 
 from __future__ import annotations
 
@@ -22,11 +23,12 @@ _WHOLE = re.compile(r"^\s*([0-9]+)[.,]0+\s*$")  #: what a table makes of a whole
 
 
 def read_choice(text: Any, choices: Choices, letters: Letters = MappingProxyType({})) -> Reading:
-    """Return the key of a choice, given by its key, a label of any language, its head or beginning, or the number there.
+    """Return the key of a choice, given by its key, a label of any language, its head or beginning, or the
+    number there.
 
-    ``choices`` maps each key to its labels, ``letters`` to the letter that the sheet printed, in the order printed: then
-    the letter, the place and a ticked one among others are read too, and what says two things is not read.
-    Without letters none is read, and no number counts places: the sheet printed none.
+    ``choices`` maps each key to its labels, ``letters`` to the letter that the sheet printed, in the order
+    printed: then the letter, the place and a ticked one among others are read too, and what says two things
+    is not read. Without letters none is read, and no number counts places: the sheet printed none.
     """
     text = bare_value(text)
     if isinstance(text, Real) and not isinstance(text, (bool, float)):
@@ -58,7 +60,8 @@ _BEFORE = re.compile(
 )
 #: Words, and a letter behind them: ``oscillates (b)``, ``oscillates, b``.
 _BEHIND = re.compile(
-    r"(?P<said>.*?\S)\s*(?:[(\[]\s*(?P<inner>[a-z])\s*[)\]]|[,:;\u2013\u2014-]\s*(?P<bare>[a-z])\s*\)?)\s*\.?",
+    r"(?P<said>.*?\S)\s*(?:[(\[]\s*(?P<inner>[a-z])\s*[)\]]|[,"
+    r":;\u2013\u2014-]\s*(?P<bare>[a-z])\s*\)?)\s*\.?",
     re.I | re.S,
 )
 _IN_BRACKETS_ANYWHERE = re.compile(r"[(\[]([^()\[\]]{1,80})[)\]]")
@@ -73,7 +76,8 @@ _CALL = re.compile(
 
 
 def _on_lettered(text: str, choices: Choices, letters: Letters) -> list[str]:
-    """Return the choices that a text may mean on a sheet that prints letters, all that it says taken together."""
+    """Return the choices that a text may mean on a sheet that prints letters, all that it says taken
+    together."""
     text = _without_answer(_ticked(text))
     keys = _said_with_letters(text, choices, letters)
     if not keys or is_verbatim(text, choices):
@@ -85,7 +89,8 @@ def _on_lettered(text: str, choices: Choices, letters: Letters) -> list[str]:
 
 
 def _letters_of_remark(remark: str) -> list[str]:
-    """Return the letters that a remark in brackets speaks of: alone, at its end, ``not c``, or as its subject, ``c is wrong``."""
+    """Return the letters that a remark in brackets speaks of: alone, at its end, ``not c``, or as its
+    subject, ``c is wrong``."""
     match = _LETTER_IN_REMARK.fullmatch(remark.strip())
     return [letter for letter in match.groups() if letter] if match else []
 
@@ -148,7 +153,8 @@ _PLACE = re.compile(r"[(\[#]?\s*(?:n\s*°\s*)?(?P<number>[0-9]{1,2})\s*[)\].:]?"
 
 
 def _by_place(text: str, choices: Choices, letters: Letters) -> list[str]:
-    """Return the choice at a place: ``2``. Where labels begin with numbers, a number is one of these, or it is two things."""
+    """Return the choice at a place: ``2``. Where labels begin with numbers, a number is one of these, or it
+    is two things."""
     match = _PLACE.fullmatch(text)
     if match is None:
         return []

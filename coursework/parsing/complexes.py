@@ -34,8 +34,9 @@ def read_complex(answer: Any, unit: str) -> Reading:
     """Return a complex number in ``unit``; the values are Python's complex numbers.
 
     Sums ``3+4i``, ``3 + j4``, exponentials ``5 e^{i 53.13°}``, moduli with their angles ``5∠53,1°``, and
-    ``(5 ; 53.13°)``, where the unit of the second tells that it is an angle. After ``∠`` an angle without a unit is in
-    degrees; in an exponent it is in radians. A pair ``(3 ; 4)`` may be either, and is ``two_values``.
+    ``(5 ; 53.13°)``, where the unit of the second tells that it is an angle. After ``∠`` an angle without a
+    unit is in degrees; in an exponent it is in radians. A pair ``(3 ; 4)`` may be either, and is
+    ``two_values``.
     """
     if isinstance(answer, (np.ndarray, np.generic)) and np.size(answer) == 1:
         answer = answer.reshape(-1)[0].item() if isinstance(answer, np.ndarray) else answer.item()
@@ -86,7 +87,8 @@ def _read(plain: str, text: Any, target: Unit) -> Reading:
 
 
 def _polar(plain: str, target: Unit) -> tuple[complex, str, bool] | None:
-    """Return the value of a modulus and an angle, its echo, whether a unit is written; nothing where it is none."""
+    """Return the value of a modulus and an angle, its echo, whether a unit is written; nothing where it is
+    none."""
     unit = ""
     if match := _BRACKETED.fullmatch(plain):
         plain, unit = (match[1], match[2]) if ";" not in match[1] else (plain, "")
@@ -124,8 +126,8 @@ def _first(amounts: list[Amount]) -> Amount:
 
 
 def _formula(plain: str, text: Any, target: Unit) -> Reading:
-    """Return a sum, a product or an exponential, with or without a unit behind it; the longest unit that leaves a
-    formula is taken."""
+    """Return a sum, a product or an exponential, with or without a unit behind it; the longest unit that
+    leaves a formula is taken."""
     first: Unreadable | None = None
     starts = [
         m.start() for m in _UNIT_START.finditer(plain) if m.start() > 0 and len(plain) - m.start() <= 60

@@ -34,9 +34,11 @@ _RAISED = str.maketrans("0123456789+-", "⁰¹²³⁴⁵⁶⁷⁸⁹⁺⁻")
 
 # --- numbers ----------------------------------------------------------------------------
 
-#: Digits with one honest reading; three of them after a comma may have two. Those of a telephone number have none.
+#: Digits with one honest reading; three of them after a comma may have two. Those of a telephone number have
+#: none.
 _PLAIN = re.compile(
-    r"\s*(?!0[1-9][0-9]{7}|\+[0-9]{10})([+-]?[0-9]+(?:\.[0-9]+|,(?:[0-9]{1,2}|[0-9]{4,}))?(?:[eE][+-]?[0-9]+)?)\s*"
+    r"\s*(?!0[1-9][0-9]{7}|\+[0-9]{10})([+-]?[0-9]+(?:\.[0-9]+|,(?:[0-9]{1,2}|[0-9]{4,"
+    r"}))?(?:[eE][+-]?[0-9]+)?)\s*"
 )
 match_plain = _PLAIN.fullmatch
 
@@ -91,7 +93,8 @@ _ALONE = re.compile(r"(?:^|(?<=[\s*/.\[])|(?<=(?<!\^)\())1(?![0-9.,])(?!\s*/\s*[
 
 
 def _rest_unit(rest: str) -> Unit | None:
-    """Return the unit after a number: ``mm``, ``*m/s``, ``/s``, ``[mm]``. A 1 is another number, but in ``1/s``."""
+    """Return the unit after a number: ``mm``, ``*m/s``, ``/s``, ``[mm]``. A 1 is another number, but in
+    ``1/s``."""
     if _ALONE.search(rest) or not _SAYS_UNIT.search(rest):
         return None
     if rest[0] == "*":
@@ -184,7 +187,8 @@ def in_digits(text: str, target: Unit, thousands: bool) -> list[Amount] | None:
 
 
 def scientific(text: str, target: Unit) -> list[Amount]:
-    """Return the first reading of ``3.10^2``, 300 on paper and 9.61 on a keyboard, and of ``3x10-2``, 0.03 or 28."""
+    """Return the first reading of ``3.10^2``, 300 on paper and 9.61 on a keyboard, and of ``3x10-2``, 0.03 or
+    28."""
     repaired, count = _LOST_POWER.subn(r"\1*10^", text, count=1) if _LOST_POWER.match(text) else (text, 0)
     return (literal(repaired, target) or []) if count else []
 

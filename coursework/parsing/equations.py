@@ -52,7 +52,8 @@ class Equation:
         return Equation(self.text, left, right)
 
     def in_degrees(self) -> Equation | None:
-        """Return the equation with numbers that stand for angles taken as degrees: ``sin(theta2 + 90)``, ``cos(90)``.
+        """Return the equation with numbers that stand for angles taken as degrees: ``sin(theta2 + 90)``,
+        ``cos(90)``.
 
         None where no such number is.
         """
@@ -62,9 +63,11 @@ class Equation:
         return Equation(self.text, *(Expression(self.text, root) for root in sides))
 
     def without_inverse(self) -> Equation | None:
-        """Return an angle that stands alone beside an inverse function, undone: ``x = atan(f)`` as ``tan(x) = f``.
+        """Return an angle that stands alone beside an inverse function, undone: ``x = atan(f)`` as
+        ``tan(x) = f``.
 
-        None where neither side is an inverse function, or no symbol stands beside it: ``atan(f) = 0``. Angles that differ by what the function cannot tell satisfy it too.
+        None where neither side is an inverse function, or no symbol stands beside it: ``atan(f) = 0``. Angles
+        that differ by what the function cannot tell satisfy it too.
         """
         for side, other in ((self.left.root, self.right.root), (self.right.root, self.left.root)):
             if side.kind == "neg":
@@ -130,7 +133,8 @@ _BEHIND = re.compile(r"(?<=\S)\s+\(?(\S+?)\)?$")
 
 
 def _read(plain: str, variables: tuple[str, ...]) -> Equation:
-    """Return an equation, or what is left of it without a title before it, ``on y: …``, and without a unit behind it."""
+    """Return an equation, or what is left of it without a title before it, ``on y: …``, and without a unit
+    behind it."""
     try:
         return _parsed_once(plain, variables)
     except Unreadable:
@@ -146,7 +150,8 @@ def _read(plain: str, variables: tuple[str, ...]) -> Equation:
 
 
 def read_equation(text: Any, variables: Iterable[str]) -> Reading:
-    """Return an equation over the given variables; the value is an :class:`~coursework.parsing.equations.Equation`."""
+    """Return an equation over the given variables; the value is an
+    :class:`~coursework.parsing.equations.Equation`."""
     text = bare_value(text)
     if isinstance(text, Real) and not isinstance(text, bool):
         text = text_of(text)

@@ -26,10 +26,10 @@ def same_equation(a: Equation, b: Equation, *, parameters: Iterable[str] = (), r
     """Return whether two equations differ by a factor only, judged by value at scattered points.
 
     The factor is a number, or an expression in the ``parameters`` alone (lengths, where angles and rates are
-    the unknowns): ``omega = -(R + r)*phi_dot/r`` is ``r*omega + (R + r)*phi_dot = 0``. It may also hold what one
-    of the two divides by, a tangent's cosine with it, as long as that does not vanish with the equation:
-    ``sin(a)/sin(b) = r2/r1`` is ``r1*sin(a) = r2*sin(b)``. Points outside a domain (a negative square root) are
-    left out. An equation that holds everywhere says nothing and equals only another such.
+    the unknowns): ``omega = -(R + r)*phi_dot/r`` is ``r*omega + (R + r)*phi_dot = 0``. It may also hold what
+    one of the two divides by, a tangent's cosine with it, as long as that does not vanish with the equation:
+    ``sin(a)/sin(b) = r2/r1`` is ``r1*sin(a) = r2*sin(b)``. Points outside a domain (a negative square root)
+    are left out. An equation that holds everywhere says nothing and equals only another such.
     """
     names = sorted(a.variables | b.variables)
     held = [name for name in names if name in set(parameters)]
@@ -110,7 +110,8 @@ def _factors(node: Operation) -> Iterable[Operation]:
 
 
 def _divisors(equation: Equation) -> list[Expression]:
-    """Return the factors by which an equation divides: each vanishes only where the equation is not defined."""
+    """Return the factors by which an equation divides: each vanishes only where the equation is not
+    defined."""
     divisors: dict[Operation, Expression] = {}
     for node in (*equation.left.root.walk(), *equation.right.root.walk()):
         below: list[Operation] = []
@@ -143,7 +144,8 @@ def _powers(
     values: Mapping[str, np.ndarray],
     rng_points: int,
 ) -> list[int] | None:
-    """Return the whole powers of the divisors whose product is the ratio of ``a`` to ``b``, if the values allow it.
+    """Return the whole powers of the divisors whose product is the ratio of ``a`` to ``b``, if the values
+    allow it.
 
     A divisor proportional to an earlier one gets the power 0.
     """

@@ -42,7 +42,8 @@ _NAME = r"\s*(?:\(\s*)?(?P<name{0}>[A-Za-z]\w*)(?:\s*\))?\s*"
 _SECOND = r"\s*(?P<second{0}>\^\s*(?:2|\(2\)|\{{2\}}))?"
 _DERIVATIVE = re.compile(
     rf"\\[dt]?frac\s*\{{\s*d{_SECOND.format(1)}{_NAME.format(1)}\}}\s*\{{\s*d\s*t(?:\s*\^\s*(?:2|\(2\)|\{{2\}}))?\s*\}}"
-    rf"|(?<![A-Za-z0-9_])d{_SECOND.format(2)}{_NAME.format(2)}/\s*d\s*t(?![A-Za-z0-9_])(?:\s*\^\s*(?:2|\(2\)))?"
+    rf"|(?<![A-Za-z0-9_])d{_SECOND.format(2)}{_NAME.format(2)}/\s*d\s*t(?![A-Za-z0-9_])(?:\s*\^\s*(?:2"
+    r"|\(2\)))?"
 )  #: ``dphi/dt``, ``d(phi)/dt``, ``d^2 phi/dt^2``, ``\\frac{d phi}{dt}``
 _FRACTION = re.compile(r"\\[dt]?frac\s*")
 _MINUS_ONE = re.compile(r"-\s*1(?![0-9.,])|\(\s*-\s*1\s*\)|\{\s*-\s*1\s*\}")
@@ -100,7 +101,8 @@ class _Parser:
         self.depth -= 1
         if len(terms) == 1:
             return terms[0]
-        # A term with a variable may be an angle: theta2 + 90°. An inverse function gives one: 180° - atan(1.6).
+        # A term with a variable may be an angle: theta2 + 90°. An inverse function gives one: 180° -
+        # atan(1.6).
         in_degrees = any(term.angle for term in terms)
         if in_degrees and any(term.constant and not (term.angle or term.turns) for term in terms):
             raise self.fail("it adds degrees to a plain number", "mixed_units", self.text)
@@ -264,7 +266,8 @@ class _Parser:
         return self.raised(node, exponent) if exponent else node
 
     def inverse_of(self, name: str) -> str:
-        """Return the inverse of a function of an angle, as calculators print it: ``sin^-1``, ``cos^(-1)``; nothing where none is written."""
+        """Return the inverse of a function of an angle, as calculators print it: ``sin^-1``, ``cos^(-1)``;
+        nothing where none is written."""
         self.peek()
         match = _MINUS_ONE.match(self.text, self.at)
         if match is None or name not in ("sin", "cos", "tan"):
@@ -301,7 +304,8 @@ class _Parser:
         return self.text[start:]
 
     def bare_argument(self, name: str) -> Operation:
-        """Return the argument of ``cos θ``, ``cos 2θ``, ``sqrt 2``: a factor, with its numeric coefficient."""
+        """Return the argument of ``cos θ``, ``cos 2θ``, ``sqrt 2``: a factor, with its numeric
+        coefficient."""
         argument = self.power()
         if argument.kind != "number" or name == "sqrt":
             return argument
@@ -330,8 +334,9 @@ def _parse(text: str, vocabulary: Vocabulary, *, tight: bool) -> tuple[Operation
 def parse_expression(text: str, variables: Iterable[str] = ()) -> Expression:
     """Read a formula over the given variables.
 
-    Names may be written as people do: ``theta2``, ``θ_2``, ``θ₂``, ``\\theta_{2}``; ``psi_dot``, ``ψ̇``, ``ψ'``. With
-    variables, ``i`` is the imaginary unit; ``e`` is Euler's number unless a variable has that name.
+    Names may be written as people do: ``theta2``, ``θ_2``, ``θ₂``, ``\\theta_{2}``; ``psi_dot``, ``ψ̇``,
+    ``ψ'``. With variables, ``i`` is the imaginary unit; ``e`` is Euler's number unless a variable has that
+    name.
 
     Raises
     ------

@@ -64,7 +64,8 @@ class Compared:
 
     @property
     def share(self) -> float:
-        """A joint right gives its share, one of another kind half of it, one that is none takes as much away; 0 at least."""
+        """A joint right gives its share, one of another kind half of it, one that is none takes as much away;
+        0 at least."""
         return max(0.0, (self.right + 0.5 * self.halves - self.beside) / self.total)
 
 
@@ -162,7 +163,8 @@ def _record_fault(
 
 
 def names_that_fit(answer: Graph, reference: Graph, held: Mapping[str, str]) -> dict[str, str] | None:
-    """For each body of an answer the one that it stands for, such that all joints are right; None where there are none.
+    """For each body of an answer the one that it stands for, such that all joints are right; None where there
+    are none.
 
     ``held`` are names that are known. A shared pivot may be written as pairs in any way that spans it.
     """
@@ -177,7 +179,8 @@ def names_that_fit(answer: Graph, reference: Graph, held: Mapping[str, str]) -> 
 
 
 def nearest_names(answer: Graph, reference: Graph, held: Mapping[str, str]) -> dict[str, str]:
-    """Names by which much of an answer is right: the best that exchanging two at a time leads to, from some starts."""
+    """Names by which much of an answer is right: the best that exchanging two at a time leads to, from some
+    starts."""
     mine, theirs = (_by_joints(graph) for graph in (answer, reference))
     free = [body for body in mine if body not in held]
     open_to = [body for body in theirs if body not in held.values()]
@@ -277,7 +280,8 @@ def _along(pairs: _Pairs) -> list[str]:
 
 
 def _spanned(joint: Edge) -> Iterator[list[Edge]]:
-    """Yield the ways to hold k bodies together by k - 1 pairs: k to the power k - 2 of them, by their Prüfer sequences."""
+    """Yield the ways to hold k bodies together by k - 1 pairs: k to the power k - 2 of them, by their Prüfer
+    sequences."""
     bodies = joint.bodies
     for sequence in product(bodies, repeat=len(bodies) - 2):
         degrees = Counter([*bodies, *sequence])

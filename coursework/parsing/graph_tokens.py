@@ -51,7 +51,8 @@ def kind_named(text: str) -> str | None:
 
 
 class Token(NamedTuple):
-    """``body``, ``kind``, ``link``, ``comma``, ``stop`` or ``times``, what it stands for, and as it was written."""
+    """``body``, ``kind``, ``link``, ``comma``, ``stop`` or ``times``, what it stands for, and as it was
+    written."""
 
     sort: str
     said: str = ""
@@ -67,10 +68,12 @@ _NUMBERING = re.compile(
     r"(?=[^,;\n]*[0-9]\s*+[-/]\s*+[a-z]{0,2}[0-9])"
 )  # nothing is given back: blank lines would be tried in all their ways
 _TUPLE = re.compile(
-    rf"[(\[{{]\s*({_NAME})\s*[,;]\s*({_NAME})\s*(?:[,;]\s*({_NAME})\s*)?(?:[,;]\s*([^\W\d_][^,;()\[\]{{}}]*))?[)\]}}]"
+    rf"[(\[{{]\s*({_NAME})\s*[,;]\s*({_NAME})\s*(?:[,;]\s*({_NAME})\s*)?(?:[,;]\s*([^\W\d_][^,"
+    rf";()\[\]{{}}]*))?[)\]}}]"
 )
 _PIECE = re.compile(
-    r"(?P<times>(?:[*×]|\bx)\s*(?P<n>[2-9])\b|\b(?P<m>[2-9])\s*(?:[*×]|x\b))|(?P<stop>[;\n]|\.(?=\s|$))|(?P<comma>[,&+])"
+    r"(?P<times>(?:[*×]|\bx)\s*(?P<n>[2-9])\b|\b(?P<m>[2-9])\s*(?:[*×]|x\b))|(?P<stop>[;\n]|\.(?=\s|$))"
+    r"|(?P<comma>[,&+])"
     r"|(?P<link>[-/])|(?P<name>[A-Za-z]{0,2}[0-9]+)|(?P<word>[^\W\d_]+)|(?P<rest>[:=()\[\]{}|'\"*.°→_]|\s)"
 )
 
@@ -149,7 +152,8 @@ def _is_label(pieces: Sequence[re.Match[str]], index: int) -> bool:
 
 
 def _numbered(text: str, is_linked: bool, names: Collection[str]) -> list[Token]:
-    """Return a body of a number, ``12`` as two bodies where there is none of that number; ``R12`` says its kind as well."""
+    """Return a body of a number, ``12`` as two bodies where there is none of that number; ``R12`` says its
+    kind as well."""
     letters = text.rstrip("0123456789")
     number = text[len(letters) :]
     tokens = []

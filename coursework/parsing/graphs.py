@@ -1,4 +1,5 @@
-"""Joint graphs as people write them: a list of joints, each by its bodies and its kind, in any order and notation."""
+"""Joint graphs as people write them: a list of joints, each by its bodies and its kind, in any order and
+notation."""
 
 from __future__ import annotations
 
@@ -66,16 +67,18 @@ def bodies_of(graph: Graph) -> tuple[str, ...]:
 
 
 def spelled(graph: Graph) -> str:
-    """Return a graph in letters, as a figure bears them: ``1–2 R, 1–4 P``; kinds that have none by their name."""
+    """Return a graph in letters, as a figure bears them: ``1–2 R, 1–4 P``; kinds that have none by their
+    name."""
     return ", ".join(f"{joint} {LETTER_OF.get(joint.kind, joint.kind)}".strip() for joint in graph)
 
 
 def read_graph(answer: Any, reference: Graph, *, named: bool = True) -> Reading:
-    """Return the joints that an answer lists; the value is a :data:`Graph`, or two where ``P`` may be a pivot or a slide.
+    """Return the joints that an answer lists; the value is a :data:`Graph`, or two where ``P`` may be a pivot
+    or a slide.
 
-    ``1-2 pivot, 2-3 pivot, 1-4 glissière``, ``2/1 R; …``, ``pivot: 1-2, 2-3; slide: 1-4``, ``S1-S2``, ``1 -R- 2``, lines, a
-    list of tuples or records; a joint without a kind is read. The bodies of the ``reference`` tell ``12`` from ``1-2``; with
-    ``named=False`` any word may be a body.
+    ``1-2 pivot, 2-3 pivot, 1-4 glissière``, ``2/1 R; …``, ``pivot: 1-2, 2-3; slide: 1-4``, ``S1-S2``,
+    ``1 -R- 2``, lines, a list of tuples or records; a joint without a kind is read. The bodies of the
+    ``reference`` tell ``12`` from ``1-2``; with ``named=False`` any word may be a body.
     """
     if not isinstance(answer, str):
         answer = "" if answer is None else _as_text(answer)
@@ -95,9 +98,11 @@ def read_graph(answer: Any, reference: Graph, *, named: bool = True) -> Reading:
 def _refuse_strangers(
     values: Sequence[Graph], reference: Graph, named: bool, tokens: Sequence[Token]
 ) -> None:
-    """Refuse a graph that speaks of none of the mechanism's bodies, ``rad/s``, or of one joint without its kind: ``p. 12``.
+    """Refuse a graph that speaks of none of the mechanism's bodies, ``rad/s``, or of one joint without its
+    kind: ``p. 12``.
 
-    Where bodies have no names, words are bodies if something links them: ``not a slider either`` is a sentence.
+    Where bodies have no names, words are bodies if something links them: ``not a slider either`` is a
+    sentence.
     """
     body_names = {*bodies_of(reference), FRAME}
     has_kind = any(token.sort == "kind" and (len(token.text) > 1 or token.text.isupper()) for token in tokens)
@@ -279,7 +284,8 @@ def _goes_on(tokens: Sequence[Token], index: int, singles: Sequence[str]) -> boo
 def _chain(
     tokens: Sequence[Token], index: int
 ) -> tuple[tuple[str, ...] | list[tuple[tuple[str, ...], Token]], int]:
-    """Bodies that are linked, or stand side by side, and of how many tokens; a list of joints where kinds stand between."""
+    """Bodies that are linked, or stand side by side, and of how many tokens; a list of joints where kinds
+    stand between."""
     between, used = _with_kinds_between(tokens, index)
     if between:
         return between, used
@@ -305,7 +311,8 @@ def _sort(tokens: Sequence[Token], index: int) -> str:
 def _with_kinds_between(
     tokens: Sequence[Token], index: int
 ) -> tuple[list[tuple[tuple[str, ...], Token]], int]:
-    """Joints whose kind stands between their bodies, ``1 -R- 2 -R- 3``, ``1 pivot 2``, and of how many tokens."""
+    """Joints whose kind stands between their bodies, ``1 -R- 2 -R- 3``, ``1 pivot 2``, and of how many
+    tokens."""
     edges: list[tuple[tuple[str, ...], Token]] = []
     start = index
     while True:
@@ -322,7 +329,8 @@ def _with_kinds_between(
 
 
 def _framed(tokens: list[Token], reference: Graph, named: bool) -> list[Token]:
-    """Return the frame by the number that the reference gives it; 0 is the frame where no other body is called so.
+    """Return the frame by the number that the reference gives it; 0 is the frame where no other body is
+    called so.
 
     Where bodies have no names, it is called :data:`FRAME`.
     """
@@ -336,8 +344,8 @@ def _framed(tokens: list[Token], reference: Graph, named: bool) -> list[Token]:
 
 
 def _ways(tokens: list[Token]) -> Iterator[list[Token]]:
-    """Yield the tokens; and with P for a pivot where no pivot is said in another way: G is the slide then, or the answer has both
-    honest readings."""
+    """Yield the tokens; and with P for a pivot where no pivot is said in another way: G is the slide then, or
+    the answer has both honest readings."""
     kinds = [token for token in tokens if token.sort == "kind"]
     if not any(token.text.upper() == "P" for token in kinds) or any(t.said == "revolute" for t in kinds):
         yield tokens

@@ -1,4 +1,5 @@
-"""Cases of a choice as people call them in words: labels, numbers that labels begin with, formulas, a remark behind."""
+"""Cases of a choice as people call them in words: labels, numbers that labels begin with, formulas, a remark
+behind."""
 
 from __future__ import annotations
 
@@ -20,7 +21,8 @@ _LOOSE_COMMA = re.compile(r",(?![0-9])|(?<![0-9]),")
 
 @lru_cache(maxsize=4096)
 def folded(text: str) -> str:
-    """Return a label without case, accents, markup and punctuation; a formula without spaces, its signs kept."""
+    """Return a label without case, accents, markup and punctuation; a formula without spaces, its signs
+    kept."""
     text = _PLUS.sub(r"\1", _SIGN.sub(r"\1−", text.strip("$ ")))
     if "=" in text:
         text = re.sub(r"[\s_*·{}\\]", "", _ANY_MINUS.sub("−", text))
@@ -121,7 +123,8 @@ def _nouns() -> tuple[str, ...]:
 
 @lru_cache(maxsize=4096)
 def _without_noun(text: str) -> str:
-    """Return a plain label without what all of its kind are called: ``classe III`` is ``iii``, ``rigid joint`` ``rigid``."""
+    """Return a plain label without what all of its kind are called: ``classe III`` is ``iii``,
+    ``rigid joint`` ``rigid``."""
     plain = folded(text)
     for noun in _nouns():
         if plain.startswith(f"{noun} "):
@@ -155,7 +158,8 @@ def _conjunctions() -> frozenset[str]:
 
 
 def _by_beginning(text: str, choices: Mapping[str, Sequence[str]]) -> list[str]:
-    """Return the choices whose label begins so: ``double balancier``, ``cas limite``; a word with a hyphen is one."""
+    """Return the choices whose label begins so: ``double balancier``, ``cas limite``; a word with a hyphen is
+    one."""
     plain = folded(text)
     if " " not in plain:
         return []
@@ -166,7 +170,8 @@ _REMARK = re.compile(r"(?P<said>[^()]+?)\s*\((?P<remark>[^()]+)\)\s*")
 
 
 def _by_remark(text: str, choices: Mapping[str, Sequence[str]]) -> list[str]:
-    """Return the choices that stand before a remark in brackets which neither names another nor is its own: ``oscille (r2 < r1)``."""
+    """Return the choices that stand before a remark in brackets which neither names another nor is its own:
+    ``oscille (r2 < r1)``."""
     match = _REMARK.fullmatch(text)
     if match is None:
         return []
@@ -198,7 +203,8 @@ def _numbered(text: str) -> tuple[int | None, str]:
     return _numerals().get(first), rest
 
 
-#: What makes more than a numeral of one: ``2^``, ``/2``, ``\\vec{v}``, ``the two``; and a vector of a point, ``V(B∈2/0)``.
+#: What makes more than a numeral of one: ``2^``, ``/2``, ``\\vec{v}``, ``the two``; and a vector of a point,
+#: ``V(B∈2/0)``.
 _NO_NUMERAL = re.compile(r"[\\^]|^\s*/|/\s*$|^\s*(?:les|the)\s+[^\W\d_]{3,}\W*$", re.I)
 _OF_POINT = re.compile(r"\s*(?:\\vec\s*\{?\s*)?[ivx]+\s*\}?\([^()]*[∈/,]", re.I)
 
@@ -212,7 +218,8 @@ def _is_no_numeral(text: str) -> bool:
 
 
 def _by_number(text: str, choices: Mapping[str, Sequence[str]]) -> list[str]:
-    """Return the choice whose label begins with this number, however it is written, where the numbers tell choices apart."""
+    """Return the choice whose label begins with this number, however it is written, where the numbers tell
+    choices apart."""
     number, rest = _numbered(text.strip("()[] "))
     if number is None:
         return []
@@ -233,7 +240,8 @@ _MARKED = re.compile(
 
 
 def in_words(text: str, choices: Mapping[str, Sequence[str]]) -> list[str]:
-    """Return the choices that a text may mean, whatever letters a sheet prints; a mark before a label counts where it is a number."""
+    """Return the choices that a text may mean, whatever letters a sheet prints; a mark before a label counts
+    where it is a number."""
     if _is_no_numeral(text):
         return []
     keys = by_label(text, choices)
@@ -247,7 +255,8 @@ def in_words(text: str, choices: Mapping[str, Sequence[str]]) -> list[str]:
 
 
 def _meant(text: str, choices: Mapping[str, Sequence[str]]) -> list[str]:
-    """Return the choices that a text may mean, its article left out if need be; the surest way to call one first."""
+    """Return the choices that a text may mean, its article left out if need be; the surest way to call one
+    first."""
     stripped = _BEFORE.sub("", text)
     for words_said in dict.fromkeys((text, stripped)):
         keys = by_label(words_said, choices) or _by_core(words_said, choices)
@@ -280,7 +289,8 @@ def names_any(text: str, choices: Mapping[str, Sequence[str]]) -> bool:
 
 
 def numbers_of(labels: Sequence[str]) -> set[int]:
-    """Return the numbers that labels begin with, and the values that they state: ``two pairs``, ``class II``, ``w = 1``."""
+    """Return the numbers that labels begin with, and the values that they state: ``two pairs``, ``class II``,
+    ``w = 1``."""
     numbers = set()
     for label in labels:
         number, rest = _numbered(head(label))

@@ -20,7 +20,8 @@ _MOST = 20 * MAX_LENGTH  #: characters of a matrix
 _MOST_ENTRIES = 400
 
 _GRID = re.compile(
-    r"\\left\s*[(\[|.]?\s*|\\right\s*[)\]|.]?|\\(?:begin|end)\s*\{(?:[pbvBV]?matrix\*?|smallmatrix|array)\}(?:\s*\{[lcr|\s]*\})?"
+    r"\\left\s*[(\[|.]?\s*|\\right\s*[)\]|.]?|\\(?:begin|end)\s*\{(?:[pbvBV]?matrix\*?|smallmatrix"
+    r"|array)\}(?:\s*\{[lcr|\s]*\})?"
 )
 _IS_GRID = re.compile(r"\\begin\s*\{")
 _GRID_END = re.compile(r"\\end\s*\{[^{}]*\}(?:\s*\\right\s*[)\]|.])?")
@@ -62,8 +63,8 @@ def _is_column(text: str) -> bool:
 def read_matrix(answer: Any, unit: str, shape: tuple[int, int]) -> Reading:
     """Return the entries of a matrix of a shape, each value an array of that shape in ``unit``.
 
-    ``[[1, 2], [3, 4]]``, ``1 2; 3 4``, rows on lines, ``\\begin{pmatrix} 1 & 2 \\\\ 3 & 4 \\end{pmatrix}``, or a list
-    of lists; a unit behind serves for all. A matrix of another shape has ``code`` ``wrong_shape``.
+    ``[[1, 2], [3, 4]]``, ``1 2; 3 4``, rows on lines, ``\\begin{pmatrix} 1 & 2 \\\\ 3 & 4 \\end{pmatrix}``,
+    or a list of lists; a unit behind serves for all. A matrix of another shape has ``code`` ``wrong_shape``.
     """
     if _is_missing(answer):
         return Reading("" if answer is None else str(answer), "missing")

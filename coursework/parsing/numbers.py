@@ -70,26 +70,32 @@ def without_name(text: str) -> str:
 
 
 _NO_NAME = re.compile(
-    r"(?<![^\W\d_])(?:not|no|non|ne|pas|or|ou|nor|ni|rather|plut[oô]t|instead|sinon|else|faux|wrong)(?![^\W\d_])"
+    r"(?<![^\W\d_])(?:not|no|non|ne|pas|or|ou|nor|ni|rather|plut[oô]t|instead|sinon|else|faux"
+    r"|wrong)(?![^\W\d_])"
     r"|(?<![\w_^{(])[+-]?\s*(?:[0-9]+[.,][0-9]|[0-9]{3,}|[.,][0-9]|0(?![0-9]))|(?<![\w\s])\s*[+-]\s*[0-9]",
     re.I,
 )  #: what is no name of a quantity: another number (an index is none), or what is said against one
 
 
-#: What refers to another place, or speaks of the sheet and not of a quantity: ``see question: 3``, ``page: 2``, ``mark: 0``.
+#: What refers to another place, or speaks of the sheet and not of a quantity: ``see question: 3``,
+#: ``page: 2``, ``mark: 0``.
 _ELSEWHERE = re.compile(
-    r"(?<![^\W\d_])(?:voir|vois|see|cf|idem|ditto|same|m[eê]mes?|pareil|comme|like|page|pages|pp|note|mark|marks|grade|score|points?"
+    r"(?<![^\W\d_])(?:voir|vois|see|cf|idem|ditto|same|m[eê]mes?|pareil|comme|like|page|pages|pp|note"
+    r"|mark|marks|grade|score|points?"
     r"|temps restant|time left)(?![^\W\d_])(?!\s+[A-Z]\b)",
     re.I,
 )
 
 
-#: What is set equal to a number without being a name: an equation, a function of x, a sine or a square of a symbol.
+#: What is set equal to a number without being a name: an equation, a function of x, a sine or a square of a
+#: symbol.
 _NO_QUANTITY = re.compile(
     r"[eé]q(?:n|uation)?s?\.?\s*\(?[0-9]*\)?\s*[=:]|[fgh]\s*\(\s*[a-z]\s*\)\s*=|y\s*\(\s*x\s*\)\s*="
-    r"|\\?(?:sin|cos|tan|exp|ln|log)(?![a-z])(?:\^\(?[0-9]\)?)?\s*[({]?\s*(?!pi\b)[^\W\d][^=(){}+*/]*[)}]?\s*="
+    r"|\\?(?:sin|cos|tan|exp|ln"
+    r"|log)(?![a-z])(?:\^\(?[0-9]\)?)?\s*[({]?\s*(?!pi\b)[^\W\d][^=(){}+*/]*[)}]?\s*="
     r"|\\?(?:sin|cos|tan)\s*\^\(?2\)?+(?!\s*[({]?\s*[0-9])|e\s*\^"
-    r"|(?:[Σ∑]|\\sum(?![a-z])|sum\s+(?:of\s+)?|somme\s+(?:des?\s+)?)\s*\\?(?:F|M|R|vec|forces?|moments?|torques?|couples?|efforts?|actions?)(?![a-z])"
+    r"|(?:[Σ∑]|\\sum(?![a-z])|sum\s+(?:of\s+)?|somme\s+(?:des?\s+)?)\s*\\?(?:F|M|R|vec|forces?|moments?"
+    r"|torques?|couples?|efforts?|actions?)(?![a-z])"
     r"|[^\W\d_]\w*\s*(?:\^|\*\*)\s*\(?[23]\)?\s*=",
     re.I,
 )
@@ -205,10 +211,12 @@ def _are_parts_of_pi(angles: Sequence[float]) -> bool:
 
 
 def _of_angle(expression: Expression, unit: Unit | None, unit_text: str, target: Unit) -> Amount:
-    """Return the one value of a formula of an angle, in the unit that the student chose: by writing it, or by what the formula holds.
+    """Return the one value of a formula of an angle, in the unit that the student chose: by writing it, or by
+    what the formula holds.
 
-    A multiple of pi is in radians, what is divided by pi in degrees. A number that is added to an inverse function, or stands
-    in a sine, says which it is by its size: beyond two turns of radians it is in degrees, a part of pi is in radians.
+    A multiple of pi is in radians, what is divided by pi in degrees. A number that is added to an inverse
+    function, or stands in a sine, says which it is by its size: beyond two turns of radians it is in degrees,
+    a part of pi is in radians.
 
     Raises Stop: nothing tells which: ``two_values``."""
     degree = parse_unit("deg")
@@ -255,7 +263,8 @@ def _unit_of(expression: Expression, in_degrees: Expression | None) -> str:
 
 
 def _told_of_angles(node: Operation) -> Iterator[float]:
-    """Yield the numbers of a formula that are angles: added to an inverse function, or the argument of a sine."""
+    """Yield the numbers of a formula that are angles: added to an inverse function, or the argument of a
+    sine."""
     if node.kind == "sum" and node.has_inverse:
         yield from (_value_of(arg) for arg in node.args if not arg.has_inverse)
     if node.kind == "call" and node.name in ("sin", "cos", "tan") and not node.has_inverse:
@@ -345,7 +354,8 @@ _PROPORTION = re.compile(r"([+-]?\s*[0-9]+(?:[.,][0-9]+)?)\s*:\s*([0-9]+(?:[.,][
 RATIO = parse_unit("1").dimension
 
 
-#: Dates, times of the day and telephone numbers: ``2026-12-04``, ``04/12/26``, ``12/04``, ``14:30``, ``06 12 34 56 78``.
+#: Dates, times of the day and telephone numbers: ``2026-12-04``, ``04/12/26``, ``12/04``, ``14:30``,
+#: ``06 12 34 56 78``.
 _CALENDAR = re.compile(
     r"(?:19|20)[0-9]{2}([-/.])(?:0[1-9]|1[0-2])\1(?:0[1-9]|[12][0-9]|3[01])"
     r"|[0-3]?[0-9]([-/.])[0-3]?[0-9]\2(?:19|20)[0-9]{2}"
@@ -357,7 +367,8 @@ _LETTER = re.compile(r"[+-]?\s*(?:(e)(?:\s+[^\W\d_].*)?|pi|π)", re.I)
 
 
 def refuse_no_number(text: str, target: Unit) -> None:
-    """Stop at a date, a time, a telephone number, and at a letter alone: ``e``, ``e mm``, and ``π`` but where an angle or a rate of one is asked."""
+    """Stop at a date, a time, a telephone number, and at a letter alone: ``e``, ``e mm``, and ``π`` but where
+    an angle or a rate of one is asked."""
     letter = _LETTER.fullmatch(text)
     is_angle = target.is_angle or "rad" in target.text
     if _CALENDAR.fullmatch(text) or (letter and (letter[1] or not is_angle)):
@@ -396,7 +407,8 @@ _TERM = re.compile(r"\s*([+-]?)\s*([0-9]+(?:[.,][0-9]+)?)\s*([^\W\d_][^+()=]*?|[
 
 
 def _sum_of_amounts(text: str, target: Unit) -> Amount | None:
-    """Numbers with a unit each that are added or taken off: ``200 mm + 70 mm``; nothing where a term is none."""
+    """Numbers with a unit each that are added or taken off: ``200 mm + 70 mm``; nothing where a term is
+    none."""
     terms = list(_TERM.finditer(text))
     if len(terms) < _SEVERAL or "".join(term[0] for term in terms) != text or re.search(r"\s[+-][0-9]", text):
         return None  # 0 mm -70 mm is two values
@@ -415,7 +427,8 @@ _SEVERAL = 2
 _LITERAL = r"[+-]?\s*[0-9]+(?:[.,][0-9]+)?(?:[eE][+-]?[0-9]+)?"
 _IN_BRACKETS = rf"[(\[{{]\s*{_LITERAL}\s*[)\]}}]"
 _SIDE_BY_SIDE = re.compile(
-    rf"{_LITERAL}(?:\s*{_IN_BRACKETS})+|{_IN_BRACKETS}\s*(?:{_IN_BRACKETS}\s*)*(?:{_IN_BRACKETS}|[0-9][0-9.,]*(?:[eE][+-]?[0-9]+)?)"
+    rf"{_LITERAL}(?:\s*{_IN_BRACKETS})+|{_IN_BRACKETS}\s*(?:{_IN_BRACKETS}\s*)*(?:{_IN_BRACKETS}"
+    r"|[0-9][0-9.,]*(?:[eE][+-]?[0-9]+)?)"
 )
 _PER_ONE = re.compile(r"[^*/]+/\s*1")  #: ``3/1`` is a ratio as ``3:1`` is
 
@@ -426,8 +439,8 @@ _FEW_NUMBERS = 3  #: of a formula; one of more, 3(0) - 2(1), is worked out by a 
 
 
 def _refuse_several(text: str) -> None:
-    """Numbers side by side, ``(2) (1)``, ``1 [2]``, and those that a formula does nothing with, ``2 * 1``, ``2 + 0``, are
-    several; one of them is the value."""
+    """Numbers side by side, ``(2) (1)``, ``1 [2]``, and those that a formula does nothing with, ``2 * 1``,
+    ``2 + 0``, are several; one of them is the value."""
     for start in [*_unit_starts(text), len(text)]:
         unit_text, formula = text[start:], text[:start].rstrip("* ")
         if unit_text and plain_unit(unit_text) is None:
@@ -471,7 +484,8 @@ _EQUALS = re.compile(r"\s*[=≈]+\s*")
 
 
 def _written_twice(text: str, target: Unit, thousands: bool) -> list[Amount] | None:
-    """Return a number written in ways that agree: ``273.9 (273.92)``, ``180 - 75.4 = 104.6``; ``None`` where it is not.
+    """Return a number written in ways that agree: ``273.9 (273.92)``, ``180 - 75.4 = 104.6``; ``None`` where
+    it is not.
 
     The number before the brackets is meant, or that behind the equals sign.
     """
@@ -493,7 +507,8 @@ def _written_twice(text: str, target: Unit, thousands: bool) -> list[Amount] | N
 
 
 def _checked(number: str, inside: str, unit: str, target: Unit, thousands: bool) -> list[Amount] | None:
-    """Return a number that what stands in brackets behind it confirms; ``2 (π/3)`` is a product, and ``None``."""
+    """Return a number that what stands in brackets behind it confirms; ``2 (π/3)`` is a product, and
+    ``None``."""
     meant = in_digits(number, target, thousands)
     if meant is None or not any(c in "0123456789π" for c in inside):
         return None
@@ -519,9 +534,11 @@ def _reading_of(text: str, target: Unit, thousands: bool) -> _ReadingWay:
 
 
 def _agreeing(first: _ReadingWay, other: _ReadingWay, target: Unit) -> list[Amount]:
-    """Return the readings of one way to write a number that the other confirms to the last digit of the shorter.
+    """Return the readings of one way to write a number that the other confirms to the last digit of the
+    shorter.
 
-    An angle that does not say its unit may be in radians, where the other says what it is in degrees: then that is meant.
+    An angle that does not say its unit may be in radians, where the other says what it is in degrees: then
+    that is meant.
     """
     agreeing, radian = [], 1 / target.factor
     for a in first[0]:
@@ -597,9 +614,10 @@ def read_number(text: Any, unit: str, *, thousands: bool = True, measured: bool 
     """Return a number, with or without its unit, in the canonical ``unit``.
 
     Without a unit it is in ``unit``; where ``unit`` is ``deg`` and the formula speaks of radians (``π/3``),
-    radians are tried first. An int or float is taken as it is. Unless ``thousands``, the comma of ``1,234`` is
-    decimal and nothing else: a direction has no thousands of degrees, and modulo a turn any number may be near. Unless
-    ``measured``, ``2:1`` and ``2/1`` are two numbers, and so are ``80 ± 2``: a count is no ratio and has no margin.
+    radians are tried first. An int or float is taken as it is. Unless ``thousands``, the comma of ``1,234``
+    is decimal and nothing else: a direction has no thousands of degrees, and modulo a turn any number may be
+    near. Unless ``measured``, ``2:1`` and ``2/1`` are two numbers, and so are ``80 ± 2``: a count is no ratio
+    and has no margin.
 
     Raises
     ------
@@ -639,8 +657,8 @@ def read_numbers(texts: Sequence[object], unit: str) -> tuple[np.ndarray, np.nda
     """Many answers to one part at once: those that are plain digits are read here and now.
 
     Returns the values in ``unit`` (floats, NaN where there is none) and a mask (booleans) of the answers that
-    :func:`read_number` has still to read: they have a unit, a formula, two readings, or nothing readable. What
-    is neither read nor in the mask is missing. A value is the one that :func:`read_number` gives.
+    :func:`read_number` has still to read: they have a unit, a formula, two readings, or nothing readable.
+    What is neither read nor in the mask is missing. A value is the one that :func:`read_number` gives.
 
     Raises
     ------

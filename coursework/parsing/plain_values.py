@@ -18,8 +18,11 @@ MOST_ITEMS = 10_000  #: of a list with all that it holds
 _PLAIN = frozenset((str, int, float, complex, bool, type(None), Fraction))
 _BASES: tuple[Any, ...] = (str, int, float, complex)
 _SAME: Mapping[type, Any] = {
-    str: str.__str__, int: int.__pos__, float: float.__pos__, complex: complex.__pos__,
-}  # fmt: skip
+    str: str.__str__,
+    int: int.__pos__,
+    float: float.__pos__,
+    complex: complex.__pos__,
+}
 _SERIES = (list, tuple, set, frozenset)
 
 
@@ -34,8 +37,9 @@ class Strange:
 
 
 def plain_answer(answer: Any) -> Any:
-    """Return the answer, of Python's own types alone: numbers, texts, and lists, sets and mappings of them; of
-    NumPy's values, Python's. Anything else is :class:`Strange`, and so is what is nested or filled beyond all measure.
+    """Return the answer, of Python's own types alone: numbers, texts, and lists, sets and mappings of them;
+    of NumPy's values, Python's. Anything else is :class:`Strange`, and so is what is nested or filled beyond
+    all measure.
     """
     if type(answer) in _PLAIN:
         return answer  # nearly all of them

@@ -45,7 +45,8 @@ def _splits(text: str) -> Iterable[list[str]]:
 
 
 def _coordinates(pieces: Sequence[str], unit: str, target: Unit) -> list[tuple[tuple[float, ...], str, bool]]:
-    """Return the readings of coordinates, their echo, whether a unit is written; the last one's serves for all."""
+    """Return the readings of coordinates, their echo, whether a unit is written; the last one's serves for
+    all."""
     pieces = [piece.strip() for piece in pieces]
     columns = [read_amounts(piece, target) for piece in pieces]
     units = {column[0].unit for column in columns}
@@ -79,7 +80,8 @@ def _bare_point(text: str) -> tuple[str, str]:
 
 
 _AXIS = re.compile(
-    r"(?P<sign>[+-]?)\s*(?:(?:l'\s*)?ax(?:e|is)\s+)?(?:\\?(?:vec|overrightarrow)\s*)?\{?\s*(?P<letter>[xyz])\u20d7?\s*\}?(?:[ -]axis)?",
+    r"(?P<sign>[+-]?)\s*(?:(?:l'\s*)?ax(?:e|is)\s+)?(?:\\?(?:vec"
+    r"|overrightarrow)\s*)?\{?\s*(?P<letter>[xyz])\u20d7?\s*\}?(?:[ -]axis)?",
     re.I,
 )  #: ``y``, ``-z``, ``\\vec y``, ``y axis``
 
@@ -109,7 +111,8 @@ _MULTIPLE = re.compile(r"^(?:\\?(?:omega|lambda)|[ωλk])\s*[.*]?\s*(?=\()")  #:
 def _combination(
     text: str, count: int, symbols: Mapping[str, float] | None = None
 ) -> tuple[float, ...] | None:
-    """Return the vector that a sum of vectors of the base is, ``x_a + 1.36 z``, ``(3x - 4y)/5``, ``(R + r) x``, or ``None``."""
+    """Return the vector that a sum of vectors of the base is, ``x_a + 1.36 z``, ``(3x - 4y)/5``,
+    ``(R + r) x``, or ``None``."""
     names, symbols = tuple("xyz"[:count]), symbols or {}
     bare = _MULTIPLE.sub("", text, count=1)
     spelled = _VECTOR.sub(lambda match: f" {match[1] or match[2]} ", bare)
@@ -175,11 +178,11 @@ def _point(text: str, original: str, target: Unit, count: int) -> Reading:
 
 
 def read_point(text: Any, unit: str, count: int) -> Reading:
-    """Return the ``count`` coordinates of a point or a vector, each value a tuple of floats in ``unit``; an axis is a direction.
+    """Return the ``count`` coordinates of a point or a vector, each value a tuple of floats in ``unit``; an
+    axis is a direction.
 
-    ``(12,3 ; 4,5) mm``, ``12.3, 4.5``, ``[1, 0, 1]``, ``(1 0 1)_a``, ``x = 1; y = 2``, or a list; a direction also as a sum,
-    ``x_a + 1.36 z``. A unit
-    behind the brackets or behind the last coordinate serves for all.
+    ``(12,3 ; 4,5) mm``, ``12.3, 4.5``, ``[1, 0, 1]``, ``(1 0 1)_a``, ``x = 1; y = 2``, or a list; a direction
+    also as a sum, ``x_a + 1.36 z``. A unit behind the brackets or behind the last coordinate serves for all.
     """
     target, text = target_unit(unit), bare_value(text)
     if isinstance(text, (list, tuple)):

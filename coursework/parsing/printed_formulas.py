@@ -1,8 +1,9 @@
 """Values of printed formulas, read off the LaTeX as a reader reads them off the paper.
 
-The tree that every sheet is printed from (:mod:`coursework.rendering.formula_tree`) is evaluated, not the code that
-printed it: a sign, a bracket or a degree that is lost on the way gives another number. Angles marked with a degree sign
-are in degrees, all others in radians. A formula that holds a letter or a word without a value is none.
+The tree that every sheet is printed from (:mod:`coursework.rendering.formula_tree`) is evaluated, not the
+code that printed it: a sign, a bracket or a degree that is lost on the way gives another number. Angles
+marked with a degree sign are in degrees, all others in radians. A formula that holds a letter or a word
+without a value is none.
 """
 
 from __future__ import annotations
@@ -43,9 +44,9 @@ class NotEvaluable(CourseworkError, ValueError):
 class FormulaValue:
     """Value of a printed formula, and the amount by which the rounding of its numbers may move it.
 
-    ``values`` holds a number, or a number a coordinate of a vector; complex where the formula is, NaN where it does
-    not exist. ``widths`` holds as many bounds: the moves of a value when each number is moved by half of its last printed
-    digit, added up; infinite where the value comes into being or ceases to be on the way.
+    ``values`` holds a number, or a number a coordinate of a vector; complex where the formula is, NaN where
+    it does not exist. ``widths`` holds as many bounds: the moves of a value when each number is moved by half
+    of its last printed digit, added up; infinite where the value comes into being or ceases to be on the way.
     """
 
     values: tuple[complex, ...]
@@ -55,8 +56,9 @@ class FormulaValue:
 def read(latex: str, rounded_to: int, *, is_angle: bool = False) -> FormulaValue:
     """Evaluate a formula.
 
-    A number that is printed with fewer than ``rounded_to`` significant digits is exact but for its last bits, any other
-    is right to half of its last digit. The values of ``is_angle`` are angles in radians: a whole turn moves them by nothing.
+    A number that is printed with fewer than ``rounded_to`` significant digits is exact but for its last bits,
+    any other is right to half of its last digit. The values of ``is_angle`` are angles in radians: a whole
+    turn moves them by nothing.
 
     Raises
     ------
@@ -104,8 +106,12 @@ def _numbers(node: Any) -> list[Num]:
     if isinstance(node, tuple):
         return [number for item in node for number in _numbers(item)]
     inner = {
-        FormulaRow: ("items",), Fraction: ("above", "below"), Root: ("body",), Fence: ("body",), Script: ("base", "above"),
-    }.get(type(node), ())  # fmt: skip
+        FormulaRow: ("items",),
+        Fraction: ("above", "below"),
+        Root: ("body",),
+        Fence: ("body",),
+        Script: ("base", "above"),
+    }.get(type(node), ())
     return [number for name in inner for number in _numbers(getattr(node, name))]
 
 
@@ -169,7 +175,8 @@ _LETTERS = {"π": math.pi, "i": 1j}
 
 
 class Evaluation:
-    """One evaluation of a tree. Every value is a column: as printed, then with each number moved up, and down."""
+    """One evaluation of a tree. Every value is a column: as printed, then with each number moved up, and
+    down."""
 
     def __init__(self, numbers: Sequence[Num], halves: Sequence[float]):
         self.halves = halves

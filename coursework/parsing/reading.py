@@ -35,7 +35,8 @@ class Reading:
 
     @staticmethod
     def plain(text: str, value: float, digits: str) -> Reading:
-        """Return a number in plain digits: most of what comes back, made without the checks of a frozen class."""
+        """Return a number in plain digits: most of what comes back, made without the checks of a frozen
+        class."""
         reading = Reading.__new__(Reading)
         reading.__dict__.update(
             text=text, status="read", values=(value,), read_as=(digits,), unit_given=False, code="", found=""
@@ -85,7 +86,8 @@ _MAX_ITEMS, _MAX_NESTING = 100, 4  #: of an array that is looked into
 
 
 def reading_of(answer: object, read: Callable[[str], Reading]) -> Reading:
-    """Return the reading of an answer; for all kinds: what is missing, what is too long, what stops on the way."""
+    """Return the reading of an answer; for all kinds: what is missing, what is too long, what stops on the
+    way."""
     answer = bare_value(answer)
     if answer is None:
         return Reading("", "missing")

@@ -1,4 +1,5 @@
-"""A scale as drawings state it, ``1 cm = 100 mm``, ``1 mm for 20 mm/s``, ``1:2``: what a millimetre of paper stands for."""
+"""A scale as drawings state it, ``1 cm = 100 mm``, ``1 mm for 20 mm/s``, ``1:2``: what a millimetre of paper
+stands for."""
 
 from __future__ import annotations
 
@@ -20,7 +21,8 @@ def is_of_paper(unit: str) -> bool:
 
 
 def restated(text: str, unit: str) -> tuple[str, ...]:
-    """Return the texts to be read in place of a scale: ``100 mm/cm`` for ``1 cm = 100 mm``, or the text as it is.
+    """Return the texts to be read in place of a scale: ``100 mm/cm`` for ``1 cm = 100 mm``, or the text as it
+    is.
 
     A ratio of lengths has two honest readings, ``1:2`` or ``1/2`` is 2 mm for one of paper, or half of one.
     """

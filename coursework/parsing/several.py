@@ -80,7 +80,8 @@ def _none_words() -> tuple[str, ...]:
 
 
 def _split(text: str, choices: Mapping[str, Sequence[str]]) -> frozenset[str] | str:
-    """Return the cases of a text, whose labels may themselves hold commas: the longest piece that is one is taken."""
+    """Return the cases of a text, whose labels may themselves hold commas: the longest piece that is one is
+    taken."""
     reading = read_choice(text.strip(" \"'."), choices) if len(text) <= _longest(choices) else None
     if reading is not None and reading.status == "read":
         return frozenset(reading.values)
@@ -104,7 +105,8 @@ def _longest(choices: Mapping[str, Sequence[str]]) -> int:
 def _pieces(
     text: str, ends: Sequence[tuple[int, int]], choices: Mapping[str, Sequence[str]]
 ) -> Iterator[tuple[str | None, int]]:
-    """Yield the keys of a text from left to right, each with where it starts; None where a piece is no case."""
+    """Yield the keys of a text from left to right, each with where it starts; None where a piece is no
+    case."""
     start, longest = 0, _longest(choices)
     while start < len(text):
         cuts = [(len(text), len(text)), *((a, b) for a, b in reversed(ends) if a >= start)]

@@ -40,7 +40,8 @@ _QUOTES = {'"': '"', "'": "'", "«": "»", "“": "”", "„": "“", "‘": "�
 
 
 def unwrapped(text: str) -> str:
-    """Return a text without what a program put around it: entities of HTML, quotation marks, the ' of a spreadsheet."""
+    """Return a text without what a program put around it: entities of HTML, quotation marks, the ' of a
+    spreadsheet."""
     text = unescape(text).strip() if "&" in text else text.strip()
     if text[:1] in _QUOTES:
         if len(text) > 1 and text[-1] == _QUOTES[text[0]]:
@@ -76,7 +77,8 @@ _TABLE = _Characters({ord(odd): plain for plain, odds in _ALIKE.items() for odd 
 
 
 def tidy(text: str) -> str:
-    """Return the text with one spelling for each kind of space, sign, digit, dot and quote; ``²`` is ``^(2)``."""
+    """Return the text with one spelling for each kind of space, sign, digit, dot and quote; ``²`` is
+    ``^(2)``."""
     if text.isascii() and text.isprintable():
         return text.strip()
     text = _BROKEN_POWER.sub("⁻", unicodedata.normalize("NFC", text))
@@ -103,7 +105,8 @@ _LATEX = (
 
 
 def without_latex(text: str) -> str:
-    """Return a tidy text with the commonest LaTeX spelled plainly; fractions and roots are left to the parser."""
+    """Return a tidy text with the commonest LaTeX spelled plainly; fractions and roots are left to the
+    parser."""
     if "\\" in text or "$" in text or "{" in text or "^" in text:
         for pattern, plain in _LATEX:
             text = pattern.sub(plain, text)
@@ -111,12 +114,14 @@ def without_latex(text: str) -> str:
 
 
 def plain_spelling(text: str) -> str:
-    """Return a text as the parsers take it: tidy, its commonest LaTeX spelled plainly. Once made plain, a text is handed on."""
+    """Return a text as the parsers take it: tidy, its commonest LaTeX spelled plainly. Once made plain, a
+    text is handed on."""
     return without_latex(tidy(text))
 
 
 def as_typed(piece: str, text: str) -> str:
-    """Return the piece of a text that is spelled so when it is plain, as it was typed: ``s²`` for ``s^(2)``; else the piece itself."""
+    """Return the piece of a text that is spelled so when it is plain, as it was typed: ``s²`` for ``s^(2)``;
+    else the piece itself."""
     if not piece or piece in text or len(text) > _MAX_SEARCHED:
         return piece
     last = (_STAYS if "\\" not in text else _STAYS - _OF_COMMANDS) - {piece[-1]}
@@ -134,7 +139,8 @@ def as_typed(piece: str, text: str) -> str:
 
 
 _MAX_SEARCHED = 80  #: characters of a text of which each piece is tried
-#: What is spelled as itself, unless it ends a command of LaTeX: a piece that is typed so begins and ends with it.
+#: What is spelled as itself, unless it ends a command of LaTeX: a piece that is typed so begins and ends with
+#: it.
 _OF_COMMANDS = frozenset(string.ascii_letters + "(),;:!")
 _STAYS = _OF_COMMANDS | frozenset(string.digits + "+/=<>|.?&%")
 _DOTS = re.compile(r"\\(d?dot)\s*(?:\{([^{}]*)\}|(\\[A-Za-z]+|[^\W\d_]))")
@@ -162,7 +168,8 @@ def _greek(char: str) -> str:
 
 
 def spelled_out(text: str) -> str:
-    """Return a text in which every name is ASCII: ``ψ̇``, ``\\dot\\psi`` -> ``psi_dot``, ``θ_{2}`` -> ``theta_2``."""
+    """Return a text in which every name is ASCII: ``ψ̇``, ``\\dot\\psi`` -> ``psi_dot``, ``θ_{2}`` ->
+    ``theta_2``."""
     text = _DOTS.sub(lambda m: f"{m[2] or m[3]}_{m[1]}", text)
     text = _SUBSCRIPT.sub(r"_\1", text)
     text = _COMMAND.sub(r" \1", text)

@@ -1,4 +1,5 @@
-"""Words that answers hold beside numbers: that nothing is known, that it stands elsewhere, a sign, a sense, a root."""
+"""Words that answers hold beside numbers: that nothing is known, that it stands elsewhere, a sign, a sense, a
+root."""
 
 from __future__ import annotations
 
@@ -48,7 +49,8 @@ def refers_elsewhere(text: str) -> bool:
 
 
 def _either(category: str) -> str:
-    """Return the words of every language as a pattern, their spaces of any length, with accents and without."""
+    """Return the words of every language as a pattern, their spaces of any length, with accents and
+    without."""
     phrases = {
         w
         for lang in languages()
@@ -89,8 +91,8 @@ def number_words() -> dict[str, int]:
     }
 
 
-#: What people write about a number beside words: an arrow before it, a sign in brackets, digits that go on, a power of ten
-#: in words, a direction up to a turn, to which digit it is rounded, the same in another unit.
+#: What people write about a number beside words: an arrow before it, a sign in brackets, digits that go on, a
+#: power of ten in words, a direction up to a turn, to which digit it is rounded, the same in another unit.
 _HABITS = (
     (re.compile(r"^(?:[→⇒⟹⟶∴]|[=~-]>|~=)\s*(?=[+-]?\s*[0-9])"), ""),
     (re.compile(r"^\(\s*([+-])\s*\)\s*(?=[0-9])"), r"\1"),

@@ -1,4 +1,5 @@
-"""Twists and wrenches as people write them: ``{0 10; 0 20; 5 0}``, ``{0 0 5 | 10 20 0}_A``, two lists, six numbers.
+"""Twists and wrenches as people write them: ``{0 10; 0 20; 5 0}``, ``{0 0 5 | 10 20 0}_A``, two lists, six
+numbers.
 
 A torsor has six cells, those of its resultant before those of its moment; a plane one keeps three of them.
 """
@@ -47,23 +48,27 @@ WRENCH = TorsorForm(
     re.compile(r"\s*(?:vec|overrightarrow|\{|\s)*[rf]", re.I),
     re.compile(r"\s*(?:vec|overrightarrow|\{|\s)*m", re.I),
     re.compile(
-        r"(?P<name>[XYZLMN])(?:_?\d\w*|_[A-Z]\w?)?(?:[,/]\d+)*'?|(?P<half>[FRM])_?(?P<axis>[xyz])(?:_?\d\w*|_[A-Z]\w?)?(?:[,/]\d+)*'?"
+        r"(?P<name>[XYZLMN])(?:_?\d\w*|_[A-Z]\w?)?(?:[,/]\d+)*'?"
+        r"|(?P<half>[FRM])_?(?P<axis>[xyz])(?:_?\d\w*|_[A-Z]\w?)?(?:[,/]\d+)*'?"
     ),
 )
 
 
 class _Cells(NamedTuple):
-    """The cells of a text by place, none at those that a plane torsor leaves out, and what stands behind them."""
+    """The cells of a text by place, none at those that a plane torsor leaves out, and what stands behind
+    them."""
 
     texts: tuple[str | None, ...]
     behind: str
 
 
 def read_torsor(answer: Any, form: TorsorForm, units: tuple[str, str], count: int) -> Reading:
-    """Return the components of a torsor in ``units``, those of its resultant and of its moment, as arrays of shape ``(count,)``.
+    """Return the components of a torsor in ``units``, those of its resultant and of its moment, as arrays of
+    shape ``(count,)``.
 
-    ``count`` is 6, resultant before moment, or 3 for a plane one in the order of ``form.plane``. A unit stands in a
-    cell, behind a column for all of it, or behind the brackets, where it goes to the column that it fits.
+    ``count`` is 6, resultant before moment, or 3 for a plane one in the order of ``form.plane``. A unit
+    stands in a cell, behind a column for all of it, or behind the brackets, where it goes to the column that
+    it fits.
     """
 
     def read(text: str) -> Reading:
@@ -85,9 +90,10 @@ def read_torsor(answer: Any, form: TorsorForm, units: tuple[str, str], count: in
 def read_pattern(answer: Any, form: TorsorForm) -> Reading:
     """Return the components that an answer says may differ from zero: a ``frozenset`` of names of ``form``.
 
-    A table as that of :func:`read_torsor`, with 0 where nothing can be and a symbol, ``*``, a number or ``free`` where something
-    may; a dash stands where a plane torsor says nothing. Or the names alone, ``wz, vx``; ``0`` for none. Other words are not read,
-    nor are symbols in a row that neither brackets nor a 0 make a table.
+    A table as that of :func:`read_torsor`, with 0 where nothing can be and a symbol, ``*``, a number or
+    ``free`` where something may; a dash stands where a plane torsor says nothing. Or the names alone,
+    ``wz, vx``; ``0`` for none. Other words are not read, nor are symbols in a row that neither brackets nor a
+    0 make a table.
     """
 
     def read(text: str) -> Reading:
@@ -148,7 +154,8 @@ _CALLED = re.compile(r"(?:(?:np|numpy)\s*\.\s*)?(?:array|matrix|Matrix)\s*\(\s*(
 _GROUP = re.compile(r"[\[({]([^\[\](){}]*)[\])}]")
 _ANOTHER_GROUP = re.compile(r"[\s,;|]*(?:[^\W\d][^=\[({|;]*=\s*)?[\[({]")
 _INDEX = re.compile(
-    r"\s*_?\s*(?:\(\s*[A-Z]\w?'?\s*(?:[,;]\s*\w+\s*)?\)|\{[\w\s,()/']{0,20}\}|[A-MO-Z]\d?'?(?:\s*,\s*R\w?)?(?![\w/*^]))"
+    r"\s*_?\s*(?:\(\s*[A-Z]\w?'?\s*(?:[,;]\s*\w+\s*)?\)|\{[\w\s,()/']{0,20}\}|[A-MO-Z]\d?'?(?:\s*,"
+    r"\s*R\w?)?(?![\w/*^]))"
 )
 
 
@@ -243,7 +250,8 @@ def _columns(text: str) -> list[str] | None:
 
 
 def _of_rows(rows: Sequence[str], *, plane: bool, symbols: bool, commas: bool) -> list[str] | None:
-    """Return the cells of rows: two of three, three of two, one of six or six of one; three alone in the plane.
+    """Return the cells of rows: two of three, three of two, one of six or six of one; three alone in the
+    plane.
 
     Without ``commas``, a bare one in a row of three is decimal: ``1,5; 2,5; 3,5`` are three numbers.
     """
@@ -322,7 +330,8 @@ def _by_name(cells: Sequence[str | None], form: TorsorForm) -> list[str | None]:
 
 
 def component_place(text: str, form: TorsorForm) -> int | None:
-    """Return the place of the component that a text names, ``ω_z``, ``\\omega_z``, ``M``, ``Mz``; nothing where it names none."""
+    """Return the place of the component that a text names, ``ω_z``, ``\\omega_z``, ``M``, ``Mz``; nothing
+    where it names none."""
     spelled = spelled_out(plain_spelling(text))
     if not re.fullmatch(r"[^{}]*(?:\{[^{}]*\}[^{}]*)*", spelled):
         return None
@@ -399,7 +408,8 @@ def _both(text: str, columns: Sequence[Reading | None], order: Sequence[int], be
 
 
 def _echo(columns: Sequence[Reading | None], which: int, order: Sequence[int]) -> str:
-    """Both columns as they were read, ``{0; 0; 5} {10; 20; 0}``; three components in the order in which they are asked."""
+    """Both columns as they were read, ``{0; 0; 5} {10; 20; 0}``; three components in the order in which they
+    are asked."""
     echoes = [re.sub(r"^\(|\)", "", column.read_as[which]) for column in columns if column is not None]
     if len(order) == 3:
         return "(" + "; ".join(echoes if order[0] < 3 else echoes[::-1]) + ")"
@@ -408,7 +418,10 @@ def _echo(columns: Sequence[Reading | None], which: int, order: Sequence[int]) -
 
 # ---------------------------------------------------------------------- patterns
 
-_GREEK = "alpha|beta|gamma|delta|epsilon|zeta|eta|theta|iota|kappa|lambda|mu|nu|xi|omicron|pi|rho|sigma|tau|upsilon|phi|chi|psi|o?mega"
+_GREEK = (
+    "alpha|beta|gamma|delta|epsilon|zeta|eta|theta|iota|kappa|lambda|mu|nu|xi|omicron|pi|rho|sigma|tau"
+    "|upsilon|phi|chi|psi|o?mega"
+)
 _NONE = re.compile(
     r"0|∅|(?:none|nothing|zero|null?|nulle?|aucune?|rien|z[ée]ro|tout(?:es)?\s+nulle?s)\.?", re.I
 )

@@ -51,7 +51,8 @@ class Operation:
 
     @property
     def powers_of_pi(self) -> frozenset[int]:
-        """The powers of pi among its terms as factors stand: 1 of ``2π/3``, -1 of ``1.8*180/π``, 0 of what has none."""
+        """The powers of pi among its terms as factors stand: 1 of ``2π/3``, -1 of ``1.8*180/π``, 0 of what
+        has none."""
         if self.kind == "sum":
             return frozenset().union(*(arg.powers_of_pi for arg in self.args))
         if self.kind in ("neg", "degree"):
@@ -123,7 +124,8 @@ def compute(node: Operation, values: Mapping[str, object]) -> Any:
 
 
 def without_idle(node: Operation) -> Operation:
-    """Return a tree without what does nothing: ``+ 0``, ``· 1``, ``/ 1``, ``^ 1``, signs and bars; what is times 0 is 0."""
+    """Return a tree without what does nothing: ``+ 0``, ``· 1``, ``/ 1``, ``^ 1``, signs and bars; what is
+    times 0 is 0."""
     args = tuple(map(without_idle, node.args))
     if node.kind in ("neg", "degree") or (node.kind, node.name) == ("call", "abs"):
         return args[0]
@@ -151,7 +153,8 @@ def _is_number(node: Operation, value: float) -> bool:
 
 
 def numbers_in_degrees(node: Operation) -> Operation:
-    """Return a tree in which plain numbers under a sine, a cosine, a tangent or ``e^(i …)`` are degrees, alone or added."""
+    """Return a tree in which plain numbers under a sine, a cosine, a tangent or ``e^(i …)`` are degrees,
+    alone or added."""
     args = tuple(map(numbers_in_degrees, node.args))
     if node.kind == "call" and node.name in ("sin", "cos", "tan"):
         args = (_angle_in_degrees(args[0]),)
@@ -171,7 +174,8 @@ def _angle_in_degrees(node: Operation) -> Operation:
 
 
 def _exponent_in_degrees(node: Operation) -> Operation:
-    """Return an exponent of e in which plain numbers beside the imaginary unit are degrees: ``i*90``, ``i(theta2 + 90)``."""
+    """Return an exponent of e in which plain numbers beside the imaginary unit are degrees: ``i*90``,
+    ``i(theta2 + 90)``."""
     if node.kind in ("sum", "neg"):
         return replace(node, args=tuple(map(_exponent_in_degrees, node.args)))
     if node.kind != "product" or sum(arg == _IMAGINARY for arg in node.args) != 1:
@@ -208,7 +212,8 @@ _A_RADIAN = math.degrees(1.0)
 
 
 def _calculated_in_degrees(node: Operation) -> Operation:
-    """Return a tree whose trigonometric functions take degrees, and whose inverse ones give them unless converted by hand."""
+    """Return a tree whose trigonometric functions take degrees, and whose inverse ones give them unless
+    converted by hand."""
     args = tuple(map(_calculated_in_degrees, node.args))
     if node.kind == "call" and node.name in ("sin", "cos", "tan"):
         return replace(node, args=(Operation("degree", args=args),))
@@ -239,9 +244,9 @@ def _is_conversion(node: Operation) -> bool:
 class Expression:
     """A formula that has been read.
 
-    ``is_angle``: a degree sign makes it an angle, in radians. ``other`` is the second honest reading of ``1/2π``,
-    where the product binds first; ``is_plain_quotient`` where there is nothing else, so that one number alone is chosen
-    freely.
+    ``is_angle``: a degree sign makes it an angle, in radians. ``other`` is the second honest reading of
+    ``1/2π``, where the product binds first; ``is_plain_quotient`` where there is nothing else, so that one
+    number alone is chosen freely.
     """
 
     text: str
@@ -262,7 +267,8 @@ class Expression:
     def as_calculated_in_degrees(self) -> Expression | None:
         """The formula of who works in degrees, ``180 - atan(1.6)``: its functions take and give them.
 
-        None where no inverse function gives an angle, where pi says that it is in radians, or a degree sign has spoken.
+        None where no inverse function gives an angle, where pi says that it is in radians, or a degree sign
+        has spoken.
         """
         if (
             not self.root.has_inverse

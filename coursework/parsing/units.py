@@ -7,8 +7,8 @@ angle out (``1/s`` for ``rad/s``), it is in radians. A level in decibels is one 
 ``K`` and ``°C`` alone are temperatures, each counted from its own zero: 20 °C is 293.15 K. In a product or a
 quotient (``W/(m^2*K)``), and as ``delta_K``, they are differences: 20 °C is 20 K.
 
-The factors are exact: those of the SI brochure (BIPM, 9th edition, 2019), and the international yard and pound
-(1959) with standard gravity for ``in ft lb lbf psi``.
+The factors are exact: those of the SI brochure (BIPM, 9th edition, 2019), and the international yard and
+pound (1959) with standard gravity for ``in ft lb lbf psi``.
 """
 
 from __future__ import annotations
@@ -29,8 +29,17 @@ from coursework.parsing.spelling import plain_spelling, shorten
 #: What the entries of a dimension count. A cycle is a count (1 Hz is one a second) that is a turn
 #: where an angle is expected.
 DIMENSIONS = (
-    "length", "mass", "time", "angle", "current", "cycle", "temperature", "amount", "light", "level"
-)  # fmt: skip
+    "length",
+    "mass",
+    "time",
+    "angle",
+    "current",
+    "cycle",
+    "temperature",
+    "amount",
+    "light",
+    "level",
+)
 _ANGLE, _CYCLE = DIMENSIONS.index("angle"), DIMENSIONS.index("cycle")
 
 _MAX_LENGTH = 80
@@ -48,7 +57,8 @@ class UnknownUnit(WrongUnit):
 
 @dataclass(frozen=True)
 class Unit:
-    """A unit: ``ratio`` times pi to the power ``pi`` base units (m, kg, s, rad, A, K, mol, cd), and its dimension.
+    """A unit: ``ratio`` times pi to the power ``pi`` base units (m, kg, s, rad, A, K, mol, cd), and its
+    dimension.
 
     ``zero`` is where a scale of temperatures begins, in K; None for a unit that measures differences.
     """
@@ -81,12 +91,33 @@ _ANGLE_ALONE = _dimension(angle=1)
 # --- what is known: symbols, prefixes, words --------------------------------------------
 
 _PREFIXES = {
-    "": 0, "f": -15, "p": -12, "n": -9, "μ": -6, "u": -6, "m": -3, "c": -2, "d": -1,
-    "da": 1, "h": 2, "k": 3, "M": 6, "G": 9, "T": 12,
-}  # fmt: skip
+    "": 0,
+    "f": -15,
+    "p": -12,
+    "n": -9,
+    "μ": -6,
+    "u": -6,
+    "m": -3,
+    "c": -2,
+    "d": -1,
+    "da": 1,
+    "h": 2,
+    "k": 3,
+    "M": 6,
+    "G": 9,
+    "T": 12,
+}
 _PREFIX_WORDS = {
-    "": 0, "nano": -9, "micro": -6, "milli": -3, "centi": -2, "deci": -1, "kilo": 3, "mega": 6, "giga": 9,
-}  # fmt: skip
+    "": 0,
+    "nano": -9,
+    "micro": -6,
+    "milli": -3,
+    "centi": -2,
+    "deci": -1,
+    "kilo": 3,
+    "mega": 6,
+    "giga": 9,
+}
 
 
 def _unit(ratio: str | int | Fraction, pi: int = 0, **powers: int) -> Unit:
@@ -143,18 +174,28 @@ _PLAIN = {
     "min": _unit(60, time=1),
     "h": _unit(3600, time=1),
     "t": _unit(1000, mass=1),
-    "deg": _DEGREE, "°": _DEGREE,
-    "grad": _GON, "gon": _GON, "gr": _GON,
-    "tr": _TURN, "rev": _TURN, "r": _TURN,
+    "deg": _DEGREE,
+    "°": _DEGREE,
+    "grad": _GON,
+    "gon": _GON,
+    "gr": _GON,
+    "tr": _TURN,
+    "rev": _TURN,
+    "r": _TURN,
     "rpm": _TURN_A_MINUTE,
-    "sec": _unit(1, time=1), "rd": _unit(1, angle=1),
-    "°C": _scale_of("273.15"), "degC": _scale_of("273.15"),
-    "°F": _scale_of("45967/180", "5/9"), "degF": _scale_of("45967/180", "5/9"),
+    "sec": _unit(1, time=1),
+    "rd": _unit(1, angle=1),
+    "°C": _scale_of("273.15"),
+    "degC": _scale_of("273.15"),
+    "°F": _scale_of("45967/180", "5/9"),
+    "degF": _scale_of("45967/180", "5/9"),
     "dB": _unit(1, level=1),
-    "in": _unit(_INCH, length=1), "ft": _unit(12 * _INCH, length=1),
-    "lb": _unit(_POUND, mass=1), "lbf": _unit(_POUND * _GRAVITY, length=1, mass=1, time=-2),
+    "in": _unit(_INCH, length=1),
+    "ft": _unit(12 * _INCH, length=1),
+    "lb": _unit(_POUND, mass=1),
+    "lbf": _unit(_POUND * _GRAVITY, length=1, mass=1, time=-2),
     "psi": _unit(_POUND * _GRAVITY / _INCH**2, length=-1, mass=1, time=-2),
-}  # fmt: skip
+}
 #: What a difference of temperatures is stated in.
 _DIFFERENCES = {
     f"delta_{name}": _unit(_PLAIN[name].ratio if name in _PLAIN else 1, temperature=1)
@@ -162,15 +203,53 @@ _DIFFERENCES = {
 }
 #: Words, without accents, any capitals, with or without a plural s; the first group takes prefix words.
 _WORDS = {
-    "metre": "m", "meter": "m", "gramme": "g", "gram": "g", "seconde": "s", "second": "s",
-    "radian": "rad", "newton": "N", "joule": "J", "watt": "W", "pascal": "Pa", "hertz": "Hz", "volt": "V",
-    "ampere": "A", "coulomb": "C", "ohm": "Ω",
-    "degre": "deg", "degree": "deg", "grade": "gon", "tour": "tr", "turn": "tr", "revolution": "tr",
-    "minute": "min", "heure": "h", "hour": "h", "tonne": "t",
-    "farad": "F", "henry": "H", "siemen": "S", "tesla": "T", "weber": "Wb", "kelvin": "K", "litre": "L", "liter": "L",
-    "mole": "mol", "candela": "cd", "decibel": "dB", "electronvolt": "eV", "wattheure": "Wh", "watthour": "Wh",
-    "inch": "in", "inche": "in", "pouce": "in", "foot": "ft", "feet": "ft", "celsiu": "°C",
-}  # fmt: skip
+    "metre": "m",
+    "meter": "m",
+    "gramme": "g",
+    "gram": "g",
+    "seconde": "s",
+    "second": "s",
+    "radian": "rad",
+    "newton": "N",
+    "joule": "J",
+    "watt": "W",
+    "pascal": "Pa",
+    "hertz": "Hz",
+    "volt": "V",
+    "ampere": "A",
+    "coulomb": "C",
+    "ohm": "Ω",
+    "degre": "deg",
+    "degree": "deg",
+    "grade": "gon",
+    "tour": "tr",
+    "turn": "tr",
+    "revolution": "tr",
+    "minute": "min",
+    "heure": "h",
+    "hour": "h",
+    "tonne": "t",
+    "farad": "F",
+    "henry": "H",
+    "siemen": "S",
+    "tesla": "T",
+    "weber": "Wb",
+    "kelvin": "K",
+    "litre": "L",
+    "liter": "L",
+    "mole": "mol",
+    "candela": "cd",
+    "decibel": "dB",
+    "electronvolt": "eV",
+    "wattheure": "Wh",
+    "watthour": "Wh",
+    "inch": "in",
+    "inche": "in",
+    "pouce": "in",
+    "foot": "ft",
+    "feet": "ft",
+    "celsiu": "°C",
+}
 _ACCENTS = str.maketrans("éèêàç", "eeeac")
 
 
@@ -179,7 +258,8 @@ def _scaled(unit: Unit, decades: int) -> Unit:
 
 
 def _symbol(name: str) -> Unit | None:
-    """Return a symbol with its prefix; a symbol as it stands comes before a prefix (``min`` is no milli-inch)."""
+    """Return a symbol with its prefix; a symbol as it stands comes before a prefix (``min`` is no
+    milli-inch)."""
     if name in _PLAIN:
         return _PLAIN[name]
     for size in range(3):
@@ -242,8 +322,10 @@ def _spellings() -> Iterator[str]:
 # --- reading ----------------------------------------------------------------------------
 
 _TOKEN = re.compile(
-    r"\s*(?:(?P<name>° ?[CF](?![^\W\d_])|[^\W\d_]+|[°%](?![^\W\d_]))|(?P<one>1)(?![0-9])|(?P<sign>[*./()\[\]]))"
-    r"(?P<power>\s*(?:\^|\*\*)\s*(?:[({]\s*(?P<in>[+-]?[0-9])\s*[)}]|(?P<bare>[+-]?[0-9]))|(?P<glued>-?[0-9]))?(?![0-9])"
+    r"\s*(?:(?P<name>° ?[CF](?![^\W\d_])|[^\W\d_]+|[°%](?![^\W\d_]))|(?P<one>1)(?![0-9])"
+    r"|(?P<sign>[*./()\[\]]))"
+    r"(?P<power>\s*(?:\^|\*\*)\s*(?:[({]\s*(?P<in>[+-]?[0-9])\s*[)}]|(?P<bare>[+-]?[0-9]))"
+    r"|(?P<glued>-?[0-9]))?(?![0-9])"
 )
 
 
@@ -361,8 +443,8 @@ def plain_unit(plain: str) -> Unit | None:
 def parse_unit(text: str) -> Unit:
     """Return the unit that a text names: ``rad.s-1``, ``N·m``, ``mm/s²``, ``tr/min``; ``1`` is a ratio.
 
-    A product may be written ``. · * × -`` or a space, a power ``^2 ² 2``, a quotient ``/`` or ``per``. Case matters, save in
-    ``RPM`` and the like. A quotient binds from left to right, ``mm/s/mm`` is ``(mm/s)/mm``.
+    A product may be written ``. · * × -`` or a space, a power ``^2 ² 2``, a quotient ``/`` or ``per``. Case
+    matters, save in ``RPM`` and the like. A quotient binds from left to right, ``mm/s/mm`` is ``(mm/s)/mm``.
 
     Raises
     ------
@@ -439,7 +521,8 @@ def _scale(source: Unit, target: Unit) -> tuple[Fraction, int]:
 def convert(value: Any, from_unit: str | Unit, to_unit: str | Unit) -> Any:
     """Return a value, or an array of values, in another unit of the same dimension.
 
-    A temperature is one in another scale, from its own zero. A power of ten costs one rounding at most. A unit without angle, where the other has one, is in radians.
+    A temperature is one in another scale, from its own zero. A power of ten costs one rounding at most. A
+    unit without angle, where the other has one, is in radians.
 
     Raises
     ------

@@ -55,9 +55,16 @@ FUNCTIONS: Mapping[str, Callable] = {
     "ln": np.log,
 }
 _ALIASES = {
-    "arcsin": "asin", "arccos": "acos", "arctan": "atan", "arctan2": "atan2", "tg": "tan", "arctg": "atan",
-    "cotan": "cot", "cotg": "cot", "ctg": "cot",
-}  # fmt: skip
+    "arcsin": "asin",
+    "arccos": "acos",
+    "arctan": "atan",
+    "arctan2": "atan2",
+    "tg": "tan",
+    "arctg": "atan",
+    "cotan": "cot",
+    "cotg": "cot",
+    "ctg": "cot",
+}
 INVERSE = ("asin", "acos", "atan", "atan2")
 _DEGREE_WORDS = ("deg", "degree", "degrees", "degré", "degrés")
 
@@ -95,7 +102,8 @@ class Vocabulary:
         }
 
     def variable(self, run: str) -> str | None:
-        """Return the variable of a spelling: its own, that of a rate by its dots, ``theta2_dot`` for ``omega2``, or in other capitals."""
+        """Return the variable of a spelling: its own, that of a rate by its dots, ``theta2_dot`` for
+        ``omega2``, or in other capitals."""
         key = _key(run)
         if (name := self.variables.get(key)) is not None:
             return name
@@ -122,7 +130,8 @@ class Vocabulary:
         return ("degree", "deg") if low in _DEGREE_WORDS else None
 
     def first(self, run: str) -> tuple[int, str, str] | None:
-        """Return the first name of a run of letters such as ``r2cos``: its length, kind and canonical name."""
+        """Return the first name of a run of letters such as ``r2cos``: its length, kind and canonical
+        name."""
         dead: set[int] = set()
 
         def fits(start: int) -> bool:

@@ -36,7 +36,8 @@ Results = dict[str, Any]
 
 
 def results(root: Path) -> Results:
-    """Return the results for the submission in ``root / "submission"``, always in a form that Gradescope accepts."""
+    """Return the results for the submission in ``root / "submission"``, always in a form that Gradescope
+    accepts."""
     lang = languages()[0]
     try:
         settings = json.loads((root / "source" / SETTINGS).read_text("utf-8"))

@@ -34,25 +34,52 @@ def text(content: str) -> str:
 
 
 _OPERATORS: Mapping[type, str] = {
-    ast.Add: "+", ast.Sub: "-", ast.Mult: "*", ast.Div: "/", ast.Pow: "^", ast.USub: "-", ast.UAdd: "+",
-}  # fmt: skip
+    ast.Add: "+",
+    ast.Sub: "-",
+    ast.Mult: "*",
+    ast.Div: "/",
+    ast.Pow: "^",
+    ast.USub: "-",
+    ast.UAdd: "+",
+}
 _TURN = "%pi/180"
 #: By function, how it is written; ``{0}`` is its first argument.
 _FUNCTIONS: Mapping[Any, str] = {
-    degrees.sin: f"sin({{0}}*{_TURN})", degrees.cos: f"cos({{0}}*{_TURN})", degrees.tan: f"tan({{0}}*{_TURN})",
-    degrees.asin: f"(asin({{0}})/({_TURN}))", degrees.acos: f"(acos({{0}})/({_TURN}))",
-    degrees.atan: f"(atan({{0}})/({_TURN}))", degrees.atan2: f"(atan2({{0}},{{1}})/({_TURN}))",
-    degrees.angle: f"(carg({{0}})/({_TURN}))", degrees.polar: f"({{0}}*exp(%i*{{1}}*{_TURN}))",
-    degrees.sqrt: "sqrt({0})", np.sqrt: "sqrt({0})", math.sqrt: "sqrt({0})",
-    abs: "cabs({0})", np.abs: "cabs({0})", np.real: "realpart({0})", np.imag: "imagpart({0})",
-    np.conj: "conjugate({0})", np.hypot: "sqrt({0}^2+{1}^2)", math.hypot: "sqrt({0}^2+{1}^2)",
-    np.exp: "exp({0})", np.log: "log({0})", np.sign: "signum({0})", np.minimum: "min({0},{1})",
-    np.maximum: "max({0},{1})", min: "min({0},{1})", max: "max({0},{1})",
-    np.deg2rad: f"({{0}}*{_TURN})", math.radians: f"({{0}}*{_TURN})", np.radians: f"({{0}}*{_TURN})",
-    np.rad2deg: f"({{0}}/({_TURN}))", math.degrees: f"({{0}}/({_TURN}))", np.degrees: f"({{0}}/({_TURN}))",
+    degrees.sin: f"sin({{0}}*{_TURN})",
+    degrees.cos: f"cos({{0}}*{_TURN})",
+    degrees.tan: f"tan({{0}}*{_TURN})",
+    degrees.asin: f"(asin({{0}})/({_TURN}))",
+    degrees.acos: f"(acos({{0}})/({_TURN}))",
+    degrees.atan: f"(atan({{0}})/({_TURN}))",
+    degrees.atan2: f"(atan2({{0}},{{1}})/({_TURN}))",
+    degrees.angle: f"(carg({{0}})/({_TURN}))",
+    degrees.polar: f"({{0}}*exp(%i*{{1}}*{_TURN}))",
+    degrees.sqrt: "sqrt({0})",
+    np.sqrt: "sqrt({0})",
+    math.sqrt: "sqrt({0})",
+    abs: "cabs({0})",
+    np.abs: "cabs({0})",
+    np.real: "realpart({0})",
+    np.imag: "imagpart({0})",
+    np.conj: "conjugate({0})",
+    np.hypot: "sqrt({0}^2+{1}^2)",
+    math.hypot: "sqrt({0}^2+{1}^2)",
+    np.exp: "exp({0})",
+    np.log: "log({0})",
+    np.sign: "signum({0})",
+    np.minimum: "min({0},{1})",
+    np.maximum: "max({0},{1})",
+    min: "min({0},{1})",
+    max: "max({0},{1})",
+    np.deg2rad: f"({{0}}*{_TURN})",
+    math.radians: f"({{0}}*{_TURN})",
+    np.radians: f"({{0}}*{_TURN})",
+    np.rad2deg: f"({{0}}/({_TURN}))",
+    math.degrees: f"({{0}}/({_TURN}))",
+    np.degrees: f"({{0}}/({_TURN}))",
     degrees.from_radians: f"({{0}}/({_TURN}))",
     degrees.wrap: "({0}-360*ceiling(({0}-180)/360))",
-}  # fmt: skip
+}
 _ATTRIBUTES = {"real": "realpart({0})", "imag": "imagpart({0})"}
 
 

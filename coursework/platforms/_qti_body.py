@@ -14,7 +14,8 @@ _INLINE = frozenset("a abbr b br cite code em i img kbd q small span strong sub 
 _BLOCK = frozenset(
     "blockquote dd div dl dt h1 h2 h3 h4 h5 h6 hr li ol p pre table tbody td tfoot th thead tr ul".split()
 )
-#: Tags that one of the versions lacks, with their replacement; other tags are dropped, and their content stays.
+#: Tags that one of the versions lacks, with their replacement; other tags are dropped, and their content
+#: stays.
 _FOR = {"figure": "div", "section": "div", "figcaption": "p"}
 _ALONE = frozenset({"img", "br", "hr", "input"})
 _ATTRIBUTES = {
@@ -24,10 +25,34 @@ _ATTRIBUTES = {
     "th": ("colspan", "rowspan", "scope"),
 }
 _OF_FORMULAS = (
-    "display", "alttext", "mathvariant", "stretchy", "form", "fence", "separator", "accent", "accentunder", "lspace", "rspace",
-    "width", "columnalign", "rowspacing", "columnspacing", "linethickness", "displaystyle", "scriptlevel",
-    "largeop", "movablelimits", "symmetric", "minsize", "maxsize", "height", "depth", "class", "style",
-)  # fmt: skip
+    "display",
+    "alttext",
+    "mathvariant",
+    "stretchy",
+    "form",
+    "fence",
+    "separator",
+    "accent",
+    "accentunder",
+    "lspace",
+    "rspace",
+    "width",
+    "columnalign",
+    "rowspacing",
+    "columnspacing",
+    "linethickness",
+    "displaystyle",
+    "scriptlevel",
+    "largeop",
+    "movablelimits",
+    "symmetric",
+    "minsize",
+    "maxsize",
+    "height",
+    "depth",
+    "class",
+    "style",
+)
 #: Between two braces: a player that treats its pages as templates would evaluate their content.
 _JOINED = "\N{WORD JOINER}"
 BOX = "input"  #: tag of a page's input box

@@ -27,7 +27,8 @@ STYLE = "coursework.css"
 IMAGES = "images"
 _RIGHT, _WRONG, _NONE = "right", "wrong", "missing"
 _DIGITS = 6  #: of the right number that a player may show
-#: Letters that a box of a number takes: a comma or a unit is refused as it is typed, and never marked as something else.
+#: Letters that a box of a number takes: a comma or a unit is refused as it is typed, and never marked as
+#: something else.
 _MASK = "[0-9.eE+-]*"
 #: Visible width of a box in characters, and its class in players and in the style sheet.
 _WIDTHS = {"usual": (10, "qti-input-width-10"), "wide": (20, "qti-input-width-20"), "line": (72, "line")}
@@ -284,12 +285,16 @@ class _QtiQuestion:
 
     def _line(self, verdict: str, share: float, message: str) -> str:
         points = self.posed.points
-        return str(self.words["said"]).format(
-            verdict=verdict_word(verdict, self.lang),
-            points=points_number(points * share, self.lang),
-            of=points_number(points, self.lang),
-            says=message,
-        ).strip()  # fmt: skip
+        return (
+            str(self.words["said"])
+            .format(
+                verdict=verdict_word(verdict, self.lang),
+                points=points_number(points * share, self.lang),
+                of=points_number(points, self.lang),
+                says=message,
+            )
+            .strip()
+        )
 
     def _errors(self) -> Iterator[tuple[str, str, float, str]]:
         for some in self.errors:

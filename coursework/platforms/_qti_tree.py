@@ -22,7 +22,8 @@ FORMULA = f"{{{MATHML}}}math"
 _XSI = "http://www.w3.org/2001/XMLSchema-instance"
 _XML = "http://www.w3.org/XML/1998/namespace"
 LANG = f"{{{_XML}}}lang"
-#: Element of a file that is not written: the one below it, which many files share, with these ``digits`` in its blanks.
+#: Element of a file that is not written: the one below it, which many files share, with these ``digits`` in
+#: its blanks.
 BLANKED = "blanked"
 
 #: Attributes that QTI 2.1 has not.
@@ -108,8 +109,8 @@ def _file(text: str) -> bytes:
 
 
 def _text(element: Element, spelling: QtiSpelling, more: Mapping[str, str] = NONE) -> str:
-    """Return the text of an element in a spelling, with ``more`` attributes; that of its content if the spelling has no
-    such element."""
+    """Return the text of an element in a spelling, with ``more`` attributes; that of its content if the
+    spelling has no such element."""
     if element.tag == BLANKED:
         return filled(_shared_text(element[0], spelling), element.attrib["digits"])
     inside = "".join([_text(child, spelling) for child in element])

@@ -140,15 +140,29 @@ def follows(variant: Variant, part: Part, answers: Mapping[int, float]) -> float
 def _evaluated(maxima: str, answers: Mapping[int, float]) -> float | None:
     """Return the value of such an expression."""
     space: dict[str, Any] = {
-        "sin": cmath.sin, "cos": cmath.cos, "tan": cmath.tan, "asin": cmath.asin, "acos": cmath.acos,
-        "atan": cmath.atan, "exp": cmath.exp, "log": cmath.log, "sqrt": cmath.sqrt,
+        "sin": cmath.sin,
+        "cos": cmath.cos,
+        "tan": cmath.tan,
+        "asin": cmath.asin,
+        "acos": cmath.acos,
+        "atan": cmath.atan,
+        "exp": cmath.exp,
+        "log": cmath.log,
+        "sqrt": cmath.sqrt,
         "atan2": lambda y, x: math.atan2(complex(y).real, complex(x).real),
-        "carg": lambda z: cmath.phase(z), "cabs": abs, "realpart": lambda z: complex(z).real,
-        "imagpart": lambda z: complex(z).imag, "conjugate": lambda z: complex(z).conjugate(),
-        "signum": lambda x: math.copysign(1.0, complex(x).real), "min": lambda a, b: min(complex(a).real, complex(b).real),
-        "max": lambda a, b: max(complex(a).real, complex(b).real), "ceiling": lambda x: math.ceil(complex(x).real),
-        "PI": math.pi, "I": 1j, **{f"v{part_number}": value for part_number, value in answers.items()},
-    }  # fmt: skip
+        "carg": lambda z: cmath.phase(z),
+        "cabs": abs,
+        "realpart": lambda z: complex(z).real,
+        "imagpart": lambda z: complex(z).imag,
+        "conjugate": lambda z: complex(z).conjugate(),
+        "signum": lambda x: math.copysign(1.0, complex(x).real),
+        "min": lambda a, b: min(complex(a).real, complex(b).real),
+        "max": lambda a, b: max(complex(a).real, complex(b).real),
+        "ceiling": lambda x: math.ceil(complex(x).real),
+        "PI": math.pi,
+        "I": 1j,
+        **{f"v{part_number}": value for part_number, value in answers.items()},
+    }
     text = maxima.replace("%pi", "PI").replace("%i", "I").replace("^", "**")
     try:
         value = complex(

@@ -23,7 +23,8 @@ _UNITS = tuple("mm cm dm m km um s ms h g kg N kN mN daN J kJ W kW mW Pa kPa MPa
 _BASES = {"length": "m", "mass": "kg", "time": "s"}
 _NUMBERS = ("angle", "cycle")  #: units that are numbers
 
-#: Functions of every question. ``x`` is an answer, ``u`` the unit asked, in base units; intervals hold their ends.
+#: Functions of every question. ``x`` is an answer, ``u`` the unit asked, in base units; intervals hold their
+#: ends.
 FUNCTIONS = """\
 co_number(x,u) := block([w], if is(x=EMPTYANSWER) then return(false),
   w: if emptyp(listofvars(x)) then ev(float(x),simp) else ev(float(subst(co_units,x)/(u)),simp),
@@ -212,7 +213,10 @@ def _of_following(variant: Variant, part_number: int, part: Part, result: Follow
     key = variant.key
     least = max(part.atol, key.envelope.get(part.quantity, 0.0)) if part.has_margin else 0.0
     share = part.rtol if part.has_margin else 0.0
-    half = f"max({number(settled(least))},{number(float(share))}*abs(f{part_number}))+{number(1e-9)}*abs(f{part_number})"
+    half = (
+        f"max({number(settled(least))},{number(float(share))}*abs(f{part_number}))"
+        f"+{number(1e-9)}*abs(f{part_number})"
+    )
     earlier = {earlier_number: variant.parts[earlier_number - 1] for earlier_number in result.earlier}
     wrong = " or ".join(f"not {_right(earlier_number, p)}" for earlier_number, p in earlier.items())
     tried = "".join(

@@ -22,8 +22,8 @@ def sayable(text: str) -> str:
 
 
 def inner_bytes(root: ET.Element) -> bytes:
-    """Return what a document of this root holds within the root: those of several, one after the other, are the
-    document of all."""
+    """Return what a document of this root holds within the root: those of several, one after the other, are
+    the document of all."""
     data, tag = xml_bytes(root), root.tag.encode()
     return data[data.index(b">", data.index(b"<" + tag)) + 1 : data.rindex(b"\n</" + tag)]
 

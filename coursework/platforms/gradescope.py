@@ -29,8 +29,12 @@ from coursework.system.zips import zipped
 
 #: Requirements of marking, without those of printing; a subset of the package's own.
 REQUIREMENTS = (
-    "jinja2>=3.1.6,<4", "markdown-it-py>=3.0,<5", "mdit-py-plugins>=0.4,<0.8", "numpy>=1.26,<3", "scipy>=1.11,<2",
-)  # fmt: skip
+    "jinja2>=3.1.6,<4",
+    "markdown-it-py>=3.0,<5",
+    "mdit-py-plugins>=0.4,<0.8",
+    "numpy>=1.26,<3",
+    "scipy>=1.11,<2",
+)
 _COURSE = ("exercises", "solutions", "templates")
 _NO_FILE = ("__pycache__", ".git")
 
@@ -40,7 +44,8 @@ set -euo pipefail
 root="${{AUTOGRADER:-/autograder}}"
 find_python() {{
     for name in python3.14 python3.13 python3.12 python3.11 python3; do
-        if command -v "$name" > /dev/null && "$name" -c 'import sys, venv, ensurepip; sys.exit(sys.version_info < (3, 11))' 2> /dev/null; then
+        command -v "$name" > /dev/null || continue
+        if "$name" -c 'import sys, venv, ensurepip; sys.exit(sys.version_info < (3, 11))' 2> /dev/null; then
             echo "$name"
             return
         fi

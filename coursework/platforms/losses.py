@@ -14,7 +14,8 @@ from coursework.platforms.items import Item, Loss, Pool
 from coursework.platforms.posed import COLLECTED
 
 COLUMNS = ("exercise", "part", "feature", "instead")
-#: Features of a question that stand behind another: a question that is collected is judged by nobody on the platform.
+#: Features of a question that stand behind another: a question that is collected is judged by nobody on the
+#: platform.
 _OF_JUDGED = (
     "comma",
     "unit_written",
@@ -64,7 +65,8 @@ def platform_words(section: str, platform: str, lang: str) -> Any:
     table = words(lang)["platforms"][section]
     if platform not in table:
         raise BadCourse(
-            "the platform {platform!r} has no words: language/{lang}.toml lacks platforms.{section}.{platform}; there is: {names}",
+            "the platform {platform!r} has no words: language/{lang}.toml lacks "
+            "platforms.{section}.{platform}; there is: {names}",
             platform=platform,
             lang=lang,
             section=section,

@@ -34,7 +34,8 @@ _OFF = 1e-3  #: share of a half-width that rounding an answer may move it by
 _PERCENT = 7  #: decimals of a share, as many as Moodle keeps
 _FINEST = 1000  #: weights are integers: the finest fraction of a point
 _ID = 100  #: characters of an ``idnumber``
-#: Inline style in place of our style sheet: figures that fit a telephone; a formula and its comma on one line.
+#: Inline style in place of our style sheet: figures that fit a telephone; a formula and its comma on one
+#: line.
 _STYLES = {
     "<img ": '<img style="max-width: 100%; height: auto" ',
     '<span class="kept">': '<span style="white-space: nowrap">',
@@ -57,8 +58,8 @@ class Moodle(Platform):
         return self.files_of([pool])
 
     def files_of(self, pools: Sequence[Pool]) -> Iterator[File]:
-        """Yield the files of one quiz: each question carries the languages of all pools, of which Moodle's filter
-        ``multilang`` shows the student's own."""
+        """Yield the files of one quiz: each question carries the languages of all pools, of which Moodle's
+        filter ``multilang`` shows the student's own."""
         languages = "-".join(pool.lang for pool in pools)
         batches = list(_batches(pools))
         for number, batch in enumerate(batches, start=1):
@@ -77,7 +78,8 @@ def _quiz(batch: Sequence[bytes]) -> Iterator[bytes]:
 
 
 def _batches(pools: Sequence[Pool]) -> Iterator[list[bytes]]:
-    """Yield the compressed lines of the questions of each file, as many as fit into one, each section's behind its category."""
+    """Yield the compressed lines of the questions of each file, as many as fit into one, each section's
+    behind its category."""
     batch: list[bytes] = []
     size = 0
     for position, section in enumerate(pools[0].sections):
@@ -138,7 +140,8 @@ def _question(page: Document, languages: Sequence[Mapping[str, Any]]) -> Element
 
 
 def _page(languages: Sequence[Mapping[str, Any]]) -> str:
-    """Return statement and questions with their boxes; where languages differ, each between marks of its own."""
+    """Return statement and questions with their boxes; where languages differ, each between marks of its
+    own."""
     codes = [pieces["lang"] for pieces in languages]
     join = partial(_in_languages, codes)
     attribute = f' lang="{codes[0]}"' if len(codes) == 1 else ""
@@ -161,8 +164,8 @@ _QUESTION = '<div style="margin-top: 1em">'
 
 
 def _in_languages(codes: Sequence[str], texts: Sequence[str]) -> str:
-    """Return a text, or the texts of several languages as Moodle's core filter ``multilang`` reads them. That filter
-    ends a language at the next ``</span>``: other elements of this name get another."""
+    """Return a text, or the texts of several languages as Moodle's core filter ``multilang`` reads them. That
+    filter ends a language at the next ``</span>``: other elements of this name get another."""
     if len(set(texts)) == 1:
         return texts[0]
     texts = [_SPAN.sub(r"\1bdi", text) for text in texts]
@@ -207,8 +210,8 @@ def _pieces_of(item: Item, pieces: PagePieces) -> dict[str, Any]:
 
 
 def _around_box(posed: Posed, pieces: PagePieces, styled: Callable[[str], str]) -> dict[str, str]:
-    """Return what stands before a question's box, beside it and behind it; the paragraph of the box is cut off, so
-    that each piece is whole."""
+    """Return what stands before a question's box, beside it and behind it; the paragraph of the box is cut
+    off, so that each piece is whole."""
     if posed.kind in (CHOICE, CHOICES):
         head, left, right = pieces.prompt(posed), "", ""
         opens, closes = "<div>", "</div></div>"
@@ -230,8 +233,8 @@ def _around_box(posed: Posed, pieces: PagePieces, styled: Callable[[str], str]) 
 
 
 def _box_content(posed: Posed, weight: int, pieces: PagePieces) -> dict[str, Any]:
-    """Return a question's box: its weight, its type, and of each answer its share, itself and its feedback. A collected
-    answer has weight zero: the quiz counts the points that Moodle judges."""
+    """Return a question's box: its weight, its type, and of each answer its share, itself and its feedback. A
+    collected answer has weight zero: the quiz counts the points that Moodle judges."""
     if posed.kind == NUMBER:
         answers = [
             (_worth(one.share), ":".join(numerical(one)), pieces.inline(one.message) if one.message else "")
@@ -260,8 +263,8 @@ def _box_content(posed: Posed, weight: int, pieces: PagePieces) -> dict[str, Any
 
 
 def _box(boxes: Sequence[Mapping[str, Any]], join: Callable[[Sequence[str]], str]) -> str:
-    """Return a box in cloze syntax, with the texts of all languages. The right answer of a collected one is plain text,
-    as wide as the box is to be."""
+    """Return a box in cloze syntax, with the texts of all languages. The right answer of a collected one is
+    plain text, as wide as the box is to be."""
     first, answers = boxes[0], []
     for same in zip(*(box["answers"] for box in boxes), strict=True):
         texts = [text for _, text, _ in same]

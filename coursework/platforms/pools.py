@@ -124,7 +124,8 @@ class DrawnPool:
     def _made(
         self, lang: str, platform: Platform, progress: Callable[[MadeItem], None]
     ) -> Iterator[MadeItem]:
-        """Yield each variant as it is made, by as many processes as are worth it; nothing else of it is kept."""
+        """Yield each variant as it is made, by as many processes as are worth it; nothing else of it is
+        kept."""
         chunks = [some[at : at + _CHUNK] for some in self.variants for at in range(0, len(some), _CHUNK)]
         tasks = (
             Task(

@@ -244,7 +244,8 @@ def _turned(interval: Interval, part: Part) -> Iterator[Interval]:
 
 
 def _wrong_values(key: Key, part: Part) -> Iterator[tuple[float, float]]:
-    """Yield the values that named mistakes give, then those of slips, each with the half-width in which marking names them."""
+    """Yield the values that named mistakes give, then those of slips, each with the half-width in which
+    marking names them."""
     width = key.envelope.get(part.quantity, 0.0)
     for name, value in key.wrong_ways(part.quantity):
         near = NEAR_HERE if part.quantity in key.solution.mistakes[name].targets else NEAR

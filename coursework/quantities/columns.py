@@ -13,7 +13,8 @@ from coursework.errors import WrongValue
 def each(function: Callable[..., Any], *arguments: Any, dtype: Any = object) -> Any:
     """Evaluate ``function``; element by element where some arguments are arrays, which broadcast.
 
-    Lists and records are single values. ``dtype`` is that of the array of results: ``int``, ``str``, or objects.
+    Lists and records are single values. ``dtype`` is that of the array of results: ``int``, ``str``, or
+    objects.
     """
     arrays = [np.asarray(a) for a in arguments if isinstance(a, np.ndarray)]
     if not arrays:
@@ -27,7 +28,8 @@ def each(function: Callable[..., Any], *arguments: Any, dtype: Any = object) -> 
 
 
 def each_stacked(read: Callable[[Any], Any], stacked: Any) -> Any:
-    """Evaluate ``read`` on a single object, or on each of an array of objects; vectors lie along a last axis."""
+    """Evaluate ``read`` on a single object, or on each of an array of objects; vectors lie along a last
+    axis."""
     if not isinstance(stacked, np.ndarray):
         return read(stacked)
     if stacked.dtype != object or not stacked.size:

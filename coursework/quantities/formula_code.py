@@ -1,7 +1,7 @@
 """Formula of a quantity as a Python expression tree: from its code, or from its printed form.
 
-A function whose body is one expression is that expression; guards that raise are passed over. A private helper that is
-one expression itself stands in its place. A function that says its formula by
+A function whose body is one expression is that expression; guards that raise are passed over. A private
+helper that is one expression itself stands in its place. A function that says its formula by
 :func:`coursework.solution.formula` is read off that.
 """
 
@@ -126,8 +126,12 @@ class _PutIn(ast.NodeTransformer):
 # ---------------------------------------------------------------------- formulas
 
 _OPERATIONS: Mapping[type, Callable[[Any, Any], Any]] = {
-    ast.Add: operator.add, ast.Sub: operator.sub, ast.Mult: operator.mul, ast.Div: operator.truediv, ast.Pow: operator.pow,
-}  # fmt: skip
+    ast.Add: operator.add,
+    ast.Sub: operator.sub,
+    ast.Mult: operator.mul,
+    ast.Div: operator.truediv,
+    ast.Pow: operator.pow,
+}
 
 
 @dataclass(frozen=True)
@@ -234,13 +238,28 @@ _SPACE: Mapping[str, Any] = {
     "abs": np.abs,
     "minimum": lambda *values: np.minimum.reduce(np.broadcast_arrays(*values)),
     "maximum": lambda *values: np.maximum.reduce(np.broadcast_arrays(*values)),
-    "hypot": np.hypot, "exp": np.exp, "log": np.log, "sign": np.sign, "sinh": np.sinh, "cosh": np.cosh,
-    "tanh": np.tanh, "real": np.real, "imag": np.imag,
-}  # fmt: skip
+    "hypot": np.hypot,
+    "exp": np.exp,
+    "log": np.log,
+    "sign": np.sign,
+    "sinh": np.sinh,
+    "cosh": np.cosh,
+    "tanh": np.tanh,
+    "real": np.real,
+    "imag": np.imag,
+}
 _CALLED = {
-    "arcsin": "asin", "arccos": "acos", "arctan": "atan", "ln": "log", "sgn": "sign", "min": "minimum",
-    "max": "maximum", "arg": "angle", "Re": "real", "Im": "imag",
-}  # fmt: skip
+    "arcsin": "asin",
+    "arccos": "acos",
+    "arctan": "atan",
+    "ln": "log",
+    "sgn": "sign",
+    "min": "minimum",
+    "max": "maximum",
+    "arg": "angle",
+    "Re": "real",
+    "Im": "imag",
+}
 _FIRST = 10**9  #: numbers from here on stand for names
 
 

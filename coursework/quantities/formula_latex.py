@@ -274,7 +274,8 @@ class _Printer:
             case ast.BinOp(left=left, op=ast.Div() as op, right=right):
                 return ast.BinOp(self._of_a_turn(left), op, right)
             case ast.BinOp(left=left, op=ast.Mult() as op, right=right):
-                # Of two factors the second is the angle, as in "2 × 180°", unless the first alone is a number.
+                # Of two factors the second is the angle, as in "2 × 180°", unless the first alone is a
+                # number.
                 inside = self._of_a_turn(right)
                 if inside is right:
                     return ast.BinOp(self._of_a_turn(left), op, right)
@@ -376,7 +377,8 @@ class _Printer:
         return None
 
     def _helper(self, name: str, arguments: Sequence[ast.expr]) -> tuple[str, int]:
-        """Return the LaTeX of a private helper's expression, with these arguments in place of its parameters."""
+        """Return the LaTeX of a private helper's expression, with these arguments in place of its
+        parameters."""
         helper = self.helpers.get(name)
         try:
             body = put_in(helper, arguments)
@@ -398,7 +400,8 @@ def _times(length: ast.expr, ratio: ast.expr) -> ast.expr:
 
 
 def _without_sign(node: ast.expr) -> tuple[ast.expr, bool]:
-    """Return a product without its leading sign, and whether it has one: the sign stands before the fraction."""
+    """Return a product without its leading sign, and whether it has one: the sign stands before the
+    fraction."""
     match node:
         case ast.UnaryOp(op=ast.USub(), operand=operand):
             return operand, True
@@ -409,7 +412,8 @@ def _without_sign(node: ast.expr) -> tuple[ast.expr, bool]:
 
 
 def _difference_of_squares(product: ast.BinOp) -> ast.BinOp | None:
-    """Return ``a^2 - b^2`` for ``(a - b) * (a + b)``, the form that keeps digits; None for any other product."""
+    """Return ``a^2 - b^2`` for ``(a - b) * (a + b)``, the form that keeps digits; None for any other
+    product."""
     match product.left, product.right:
         case (ast.BinOp(a, ast.Sub(), b), ast.BinOp(c, ast.Add(), d)) | (
             ast.BinOp(a, ast.Add(), b),
@@ -420,8 +424,8 @@ def _difference_of_squares(product: ast.BinOp) -> ast.BinOp | None:
 
 
 def _is_segment(symbol: str) -> bool:
-    r"""Return whether a symbol has several letters, as ``OB`` or ``\angle DOB``, which side by side would read
-    as a product."""
+    r"""Return whether a symbol has several letters, as ``OB`` or ``\angle DOB``, which side by side would
+    read as a product."""
     if "(" in symbol or symbol.startswith((r"\frac", r"\num")):
         return False
     base = re.sub(r"\\mathrm\{\w*\}", "x", symbol)
@@ -457,7 +461,8 @@ def formula_in_symbols(function: Callable[..., Any], symbols: tuple[tuple[str, s
 
 
 def _in_template(displayed: Shown, name: re.Match[str]) -> str:
-    """Return a name of a stated formula; a negative number in brackets unless an opening bracket precedes it."""
+    """Return a name of a stated formula; a negative number in brackets unless an opening bracket precedes
+    it."""
     text, is_number, *_ = displayed[name.group(1)]
     if not is_number or not text.startswith((r"\num{-", "-")):
         return text

@@ -139,7 +139,8 @@ def _run(steps: Sequence[tuple], values: dict[str, Value]) -> None:
             ) from fault
 
 
-#: Signs, in numpy's messages, that a function is written for one number, and for each the fault and what would do.
+#: Signs, in numpy's messages, that a function is written for one number, and for each the fault and what
+#: would do.
 _FOR_ARRAYS = {
     "truth value of an array": (
         "branches on an array",
@@ -153,12 +154,16 @@ _FOR_ARRAYS = {
 
 
 def _at_its_line(function: Callable[..., Value], fault: Exception, problem: str, advice: str) -> str:
-    """Return the message for a function that is written for one number, with the line that fails on an array."""
+    """Return the message for a function that is written for one number, with the line that fails on an
+    array."""
     code = getattr(function, "__code__", None)
     frames = traceback.extract_tb(fault.__traceback__)
     home = Path(code.co_filename).parent if code else Path()
     line = next((f for f in reversed(frames) if Path(f.filename).parent == home), frames[-1])
-    return f"{_location(function)} {problem}, at line {line.lineno} of {Path(line.filename).name}: {line.line}; {advice}"
+    return (
+        f"{_location(function)} {problem}, at line {line.lineno} of {Path(line.filename).name}: "
+        f"{line.line}; {advice}"
+    )
 
 
 def _missing(results: Mapping[str, str]) -> MissingQuantity:
@@ -371,8 +376,8 @@ class Graph:
         scalars or arrays that broadcast; nothing is copied or checked but names. A function must give at
         each place of an array what it would give for the values there alone.
 
-        ``results`` holds what :meth:`everything` gave for the same given values and effects, from this graph or
-        from the one that it was made of by :meth:`replacing` or :meth:`with_functions`: what still holds
+        ``results`` holds what :meth:`everything` gave for the same given values and effects, from this graph
+        or from the one that it was made of by :meth:`replacing` or :meth:`with_functions`: what still holds
         of it is not computed again.
 
         Raises
@@ -511,7 +516,8 @@ class Graph:
         return graph
 
     def mapped(self, change: Callable[[Callable[..., Value]], Callable[..., Value]]) -> Graph:
-        """Return the graph with ``change`` applied to every function, hidden ones included; arguments stay."""
+        """Return the graph with ``change`` applied to every function, hidden ones included; arguments
+        stay."""
 
         def changed(node: QuantityNode) -> QuantityNode:
             stable = changed(node.stable) if node.stable else None

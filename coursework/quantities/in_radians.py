@@ -1,7 +1,8 @@
 """Functions of a solution as a calculator in radian mode evaluates them.
 
-They are the same functions, with other things behind the names that they use: sine, cosine and tangent take the number of
-degrees for radians, and inverse functions give radians, which are written down as they come, or converted first.
+They are the same functions, with other things behind the names that they use: sine, cosine and tangent take
+the number of degrees for radians, and inverse functions give radians, which are written down as they come, or
+converted first.
 """
 
 from __future__ import annotations

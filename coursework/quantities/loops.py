@@ -1,8 +1,8 @@
 """Closed loops of a mechanism: their equations as texts in any form, and the usual errors in them.
 
 A solution states its loops once, as ``LOOPS = {"loop_1": (Vector("r2", "theta2"), …)}``: vectors
-``sign * length * e^{i (angle + turn)}`` that add up to nothing. The quantities ``loop_1_x``, ``loop_1_y`` (projections) and
-``loop_1_complex`` follow, and with ``_dot`` and ``_ddot`` their derivatives in time.
+``sign * length * e^{i (angle + turn)}`` that add up to nothing. The quantities ``loop_1_x``, ``loop_1_y``
+(projections) and ``loop_1_complex`` follow, and with ``_dot`` and ``_ddot`` their derivatives in time.
 """
 
 from __future__ import annotations
@@ -19,8 +19,14 @@ ORDERS = ("", "_dot", "_ddot")
 
 #: What is missed by who errs, in the order in which explanations are tried.
 FAULTS = (
-    "link_sign", "link_missing", "link_term", "link_turn", "link_axis", "link_angle", "frame_missing",
-)  # fmt: skip
+    "link_sign",
+    "link_missing",
+    "link_term",
+    "link_turn",
+    "link_axis",
+    "link_angle",
+    "frame_missing",
+)
 
 _Pieces = list[tuple[int, str]]  #: signed factors, to be multiplied by a sine, a cosine or e^(i…)
 
@@ -29,8 +35,9 @@ _Pieces = list[tuple[int, str]]  #: signed factors, to be multiplied by a sine, 
 class LoopLink:
     """Vector of a loop as a student may write it, right by default.
 
-    ``swapped``: sine and cosine are exchanged. ``turned``: the sign before the added angle, 0 where it is left out.
-    ``slips``: signs before the terms of its derivative, 0 where one is left out. ``coriolis``: the factor of that term.
+    ``swapped``: sine and cosine are exchanged. ``turned``: the sign before the added angle, 0 where it is
+    left out. ``slips``: signs before the terms of its derivative, 0 where one is left out. ``coriolis``: the
+    factor of that term.
     """
 
     vector: Vector
@@ -119,8 +126,8 @@ class LoopFault:
 class Loop:
     """Closed loop.
 
-    ``rates`` gives the first and the second derivative of what varies, by name; none is ''. ``known`` is how often
-    the loop can be derived in names that the solution has.
+    ``rates`` gives the first and the second derivative of what varies, by name; none is ''. ``known`` is how
+    often the loop can be derived in names that the solution has.
     """
 
     links: tuple[LoopLink, ...]
@@ -262,9 +269,9 @@ def stated(
 ) -> dict[str, Loop]:
     """Return the loops that a solution states, with the derivatives of their variables.
 
-    The angle ``theta3`` has ``omega3`` and ``alpha3``, another quantity ``r6`` has ``r6_dot`` and ``r6_ddot``, as far as
-    the solution knows them; ``rates`` names those that are called otherwise. A given quantity without a
-    derivative is constant; where one is ``computed``, the loop is derived no further.
+    The angle ``theta3`` has ``omega3`` and ``alpha3``, another quantity ``r6`` has ``r6_dot`` and
+    ``r6_ddot``, as far as the solution knows them; ``rates`` names those that are called otherwise. A given
+    quantity without a derivative is constant; where one is ``computed``, the loop is derived no further.
 
     Raises
     ------

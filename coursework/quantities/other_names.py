@@ -1,4 +1,5 @@
-"""Functions of a course with other values behind the names that they use: on another calculator, for numbers with units."""
+"""Functions of a course with other values behind the names that they use: on another calculator, for numbers
+with units."""
 
 from __future__ import annotations
 

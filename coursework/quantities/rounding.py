@@ -78,10 +78,10 @@ def envelope(
     """Return the largest distance of the student's answers from the reference, in the worst combination of
     roundings.
 
-    ``given`` holds scalars or arrays of one shape ``(n,)``, cases among them. Each step is moved by half of its
-    last digit, alone; the moves of an answer add up. ``directions`` are angles known up to a turn. Gives an array ``(n,)`` a quantity, in its unit:
-    distances for vectors, amounts of angle for angles; 0 for cases and whole numbers, infinite or NaN
-    where some step does not stand being moved.
+    ``given`` holds scalars or arrays of one shape ``(n,)``, cases among them. Each step is moved by half of
+    its last digit, alone; the moves of an answer add up. ``directions`` are angles known up to a turn. Gives
+    an array ``(n,)`` a quantity, in its unit: distances for vectors, amounts of angle for angles; 0 for cases
+    and whole numbers, infinite or NaN where some step does not stand being moved.
     """
     wanted = tuple(wanted)
     textbook = graph.textbook

@@ -1,7 +1,7 @@
 """Size of a unit: a scale and powers of base units; and the possible meanings of a number in a formula.
 
-A value is known by the *sizes* that it may have: several, where a number of the formula may be a conversion or a
-plain factor. What it is added to, and what the quantity declares, tell which one was meant.
+A value is known by the *sizes* that it may have: several, where a number of the formula may be a conversion
+or a plain factor. What it is added to, and what the quantity declares, tell which one was meant.
 """
 
 from __future__ import annotations
@@ -13,7 +13,8 @@ from typing import NamedTuple
 
 from coursework.parsing.units import DIMENSIONS, find_unit
 
-#: Dimensions that may go unsaid: an angle is a ratio, a turn is a count, and ``180`` may be a number like any other.
+#: Dimensions that may go unsaid: an angle is a ratio, a turn is a count, and ``180`` may be a number like any
+#: other.
 _SOFT = ("angle", "cycle")
 _HARD = tuple(place for place, name in enumerate(DIMENSIONS) if name not in _SOFT)
 _ANGLE, _CYCLE, _BARE = DIMENSIONS.index("angle"), DIMENSIONS.index("cycle"), len(DIMENSIONS)
@@ -148,8 +149,8 @@ _ANGULAR = (1.0, math.pi, 2 * math.pi, 180 / math.pi, 180.0)
 def meanings(number: float) -> tuple[Sizes, bool]:
     """Return the possible meanings of a factor of a formula, as sizes, and whether it is surely a conversion.
 
-    1000 may turn metres into millimetres, 60 minutes into seconds, 180 may be degrees, 9.81 metres a second squared.
-    ``180/pi`` is always a conversion.
+    1000 may turn metres into millimetres, 60 minutes into seconds, 180 may be degrees, 9.81 metres a second
+    squared. ``180/pi`` is always a conversion.
     """
     value = abs(number)
     if not math.isfinite(value) or value in (0.0, 1.0):
@@ -185,8 +186,10 @@ def _is_whole(power: float) -> bool:
 # ---------------------------------------------------------------------------- words
 
 _NAMES = (
-    "1 rad deg tr % mm cm m km µm mm^2 cm^2 m^2 mm^3 m^3 s ms min h 1/s rad/s deg/s tr/min mm/s cm/s m/s km/s km/h "
-    "rad/s^2 deg/s^2 mm/s^2 m/s^2 N kN N*m N*mm kN*m kN*mm kg g t kg*m^2 kg*mm^2 kg*mm kg*m J W kW Pa kPa MPa N/mm N/m Hz"
+    "1 rad deg tr % mm cm m km µm mm^2 cm^2 m^2 mm^3 m^3 s ms min h 1/s rad/s deg/s tr/min mm/s cm/s "
+    "m/s km/s km/h "
+    "rad/s^2 deg/s^2 mm/s^2 m/s^2 N kN N*m N*mm kN*m kN*mm kg g t kg*m^2 kg*mm^2 kg*mm kg*m J W kW Pa "
+    "kPa MPa N/mm N/m Hz"
 ).split()
 
 

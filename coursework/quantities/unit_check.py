@@ -1,7 +1,7 @@
 """Functions of a solution, adapted to numbers with units.
 
-They are the same functions, with other things behind the names that they use: functions of degrees that say what they
-take and give, numpy and math that follow units, and everything else looked at from without.
+They are the same functions, with other things behind the names that they use: functions of degrees that say
+what they take and give, numpy and math that follow units, and everything else looked at from without.
 """
 
 from __future__ import annotations
@@ -35,7 +35,8 @@ def _takes_degrees(function: Callable[..., Any], gives: Sizes) -> Callable[..., 
 
 
 def _gives_degrees(function: Callable[..., Any], takes: Any = None) -> Callable[..., Any]:
-    """Return a function that gives an angle in degrees, of a ratio, a vector, or two coordinates of one unit."""
+    """Return a function that gives an angle in degrees, of a ratio, a vector, or two coordinates of one
+    unit."""
 
     def to_angle(*values: Any) -> Any:
         if takes is None:
@@ -92,9 +93,16 @@ class _Math:
 
 
 _SPELLED = {
-    "asin": "arcsin", "acos": "arccos", "atan": "arctan", "atan2": "arctan2", "pow": "power", "phase": "angle",
-    "dist": "", "prod": "", "isclose": "isclose",
-}  # fmt: skip
+    "asin": "arcsin",
+    "acos": "arccos",
+    "atan": "arctan",
+    "atan2": "arctan2",
+    "pow": "power",
+    "phase": "angle",
+    "dist": "",
+    "prod": "",
+    "isclose": "isclose",
+}
 
 
 def _following(function: Callable[..., Any]) -> Callable[..., Any]:

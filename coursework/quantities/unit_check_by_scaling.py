@@ -1,8 +1,8 @@
 """Functions of plain numbers, such as those of the numeric core: their units by dimensional analysis.
 
-Whatever they give is computed again with lengths, masses and times in other base units. What is multiplied by a
-power of each of those factors has those powers, and its unit follows from the units of what was handed in, which
-must be of one system: lengths all in mm, say.
+Whatever they give is computed again with lengths, masses and times in other base units. What is multiplied by
+a power of each of those factors has those powers, and its unit follows from the units of what was handed in,
+which must be of one system: lengths all in mm, say.
 """
 
 from __future__ import annotations
@@ -199,6 +199,7 @@ def _system(origin: Origin) -> list[float]:
     result = np.linalg.lstsq(powers, logs, rcond=None)[0]
     if not np.allclose(powers @ result, logs, atol=1e-9):
         raise Unprovable(
-            f"{origin.name} takes units of several systems: {', '.join(sorted({size_text(s) for s in sizes}))}"
+            f"{origin.name} takes units of several systems: "
+            f"{', '.join(sorted({size_text(s) for s in sizes}))}"
         )
     return [float(v) for v in np.exp(result)]

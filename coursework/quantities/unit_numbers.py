@@ -105,13 +105,24 @@ def _operator(name: str, function: Callable[..., Any], *, turned: bool = False) 
 
 
 _DUNDERS: tuple[tuple[str, str, Callable[..., Any]], ...] = (
-    ("add", "add", operator.add), ("subtract", "sub", operator.sub), ("multiply", "mul", operator.mul),
-    ("true_divide", "truediv", operator.truediv), ("floor_divide", "floordiv", operator.floordiv),
-    ("remainder", "mod", operator.mod), ("power", "pow", operator.pow), ("negative", "neg", operator.neg),
-    ("positive", "pos", operator.pos), ("absolute", "abs", abs), ("rint", "round", round),
-    ("less", "lt", operator.lt), ("less_equal", "le", operator.le), ("greater", "gt", operator.gt),
-    ("greater_equal", "ge", operator.ge), ("equal", "eq", operator.eq), ("not_equal", "ne", operator.ne),
-)  # fmt: skip
+    ("add", "add", operator.add),
+    ("subtract", "sub", operator.sub),
+    ("multiply", "mul", operator.mul),
+    ("true_divide", "truediv", operator.truediv),
+    ("floor_divide", "floordiv", operator.floordiv),
+    ("remainder", "mod", operator.mod),
+    ("power", "pow", operator.pow),
+    ("negative", "neg", operator.neg),
+    ("positive", "pos", operator.pos),
+    ("absolute", "abs", abs),
+    ("rint", "round", round),
+    ("less", "lt", operator.lt),
+    ("less_equal", "le", operator.le),
+    ("greater", "gt", operator.gt),
+    ("greater_equal", "ge", operator.ge),
+    ("equal", "eq", operator.eq),
+    ("not_equal", "ne", operator.ne),
+)
 for _name, _dunder, _function in _DUNDERS:
     setattr(UnitValue, f"__{_dunder}__", _operator(_name, _function))
     if _dunder in ("add", "sub", "mul", "truediv", "floordiv", "mod", "pow"):
@@ -272,13 +283,65 @@ def powered(base: Any, exponent: Any) -> Sizes:
 # ------------------------------------------------------------------ functions of numpy
 
 _KEPT_BY = (
-    "where", "select", "stack", "concatenate", "hstack", "vstack", "column_stack", "broadcast_to", "sum", "mean",
-    "median", "amin", "amax", "min", "max", "nanmin", "nanmax", "real", "imag", "norm", "clip", "round", "around",
-    "squeeze", "reshape", "ravel", "nan_to_num", "diff", "cumsum", "full_like", "atleast_1d", "sort", "flip", "roll",
-    "expand_dims", "transpose", "array", "linspace", "interp", "ptp", "copy", "moveaxis", "take", "real_if_close",
-)  # fmt: skip
+    "where",
+    "select",
+    "stack",
+    "concatenate",
+    "hstack",
+    "vstack",
+    "column_stack",
+    "broadcast_to",
+    "sum",
+    "mean",
+    "median",
+    "amin",
+    "amax",
+    "min",
+    "max",
+    "nanmin",
+    "nanmax",
+    "real",
+    "imag",
+    "norm",
+    "clip",
+    "round",
+    "around",
+    "squeeze",
+    "reshape",
+    "ravel",
+    "nan_to_num",
+    "diff",
+    "cumsum",
+    "full_like",
+    "atleast_1d",
+    "sort",
+    "flip",
+    "roll",
+    "expand_dims",
+    "transpose",
+    "array",
+    "linspace",
+    "interp",
+    "ptp",
+    "copy",
+    "moveaxis",
+    "take",
+    "real_if_close",
+)
 _PRODUCTS = ("cross", "dot", "vdot", "inner", "outer", "matmul", "kron")
-_PLAIN_OF = ("ndim", "shape", "size", "ones_like", "zeros_like", "isclose", "allclose", "array_equal", "argmax", "argmin", "iscomplexobj")  # fmt: skip
+_PLAIN_OF = (
+    "ndim",
+    "shape",
+    "size",
+    "ones_like",
+    "zeros_like",
+    "isclose",
+    "allclose",
+    "array_equal",
+    "argmax",
+    "argmin",
+    "iscomplexobj",
+)
 
 
 def _array_function(function: Any, args: Sequence[Any], options: Mapping[str, Any]) -> Any:

@@ -81,7 +81,8 @@ def formula_errors(function: Callable[..., Any]) -> tuple[FormulaError, ...]:
 
 
 def _shape(node: Any, met: dict[int, Any]) -> Any:
-    """Return what equal trees have in common; ``met`` holds that of trees which several share, by identity."""
+    """Return what equal trees have in common; ``met`` holds that of trees which several share, by
+    identity."""
     if isinstance(node, list):
         return tuple(_shape(item, met) for item in node)
     if not isinstance(node, ast.AST):

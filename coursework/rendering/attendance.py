@@ -15,7 +15,8 @@ from coursework.sheets.attendance import ExamLists, RoomList
 
 
 def source(folders: Sequence[Path], lists: ExamLists, paper: str = "a4", *, public: bool = False) -> str:
-    """Return the Typst source of the attendance lists, a room after the other; of the list for the door if ``public``."""
+    """Return the Typst source of the attendance lists, a room after the other; of the list for the door if
+    ``public``."""
     heading = lists.heading
     env, texts = pdf.environment_of(tuple(folders), heading.lang), words(heading.lang)
     names = {

@@ -93,8 +93,9 @@ def _of_book(book: Book) -> dict[str, Any]:
 
 
 def _exercise(env: Environment, exercise: BookExercise, whose: str, end: str) -> dict[str, Any]:
-    """Return the variables for the template of an exercise: its body, and that of its solution. ``whose`` stands above what was
-    moved to the next page, where a question may stand alone as the text goes on after it: figures, and polygons of solutions."""
+    """Return the variables for the template of an exercise: its body, and that of its solution. ``whose``
+    stands above what was moved to the next page, where a question may stand alone as the text goes on after
+    it: figures, and polygons of solutions."""
     names = views.context(exercise.handout, 1, numbered=False) | {"whose": whose, "together": 1}
     names["body"] = Markup(render(env, f"sheet/_body.{end}", names))
     solved = views.context(exercise.solution, 1, numbered=False) | {"moving": whose}
@@ -133,8 +134,9 @@ def _typst_pieces(
 
 
 def _led(text: str, *, last: bool) -> Iterator[tuple[str, bool]]:
-    """Yield running text in parts, each with whether it keeps to what follows it: a paragraph in bold alone, as a heading is; a
-    short one that ends with a colon; and the ``last`` one where it leads to the next piece."""
+    """Yield running text in parts, each with whether it keeps to what follows it: a paragraph in bold alone,
+    as a heading is; a short one that ends with a colon; and the ``last`` one where it leads to the next
+    piece."""
     *paragraphs, end = text.strip("\n").split("\n\n")
     plain: list[str] = []
     for paragraph in paragraphs:
@@ -157,8 +159,8 @@ def _is_printed(piece: Piece) -> bool:
 
 
 def _text_first(pieces: Iterable[Piece]) -> Iterator[Piece]:
-    """Yield the pieces, and where a drawing follows a heading at once, the first paragraph between the two: the drawing may go to
-    the next page, and would take the heading with it."""
+    """Yield the pieces, and where a drawing follows a heading at once, the first paragraph between the two:
+    the drawing may go to the next page, and would take the heading with it."""
     head: Piece | None = None
     drawn: list[Piece] = []
     for piece in pieces:
@@ -208,8 +210,9 @@ class BookPage:
 def pages(
     folders: Sequence[Path], book: Book, paper: str = "a4", *, solutions: bool = True
 ) -> dict[str, Callable[[], str]]:
-    """Return the pages of a book by their files, each a function that makes it: contents, lessons, exercises, the index, and solutions
-    where they are wanted. Each stands alone; those of exercises run the one script that keeps answers."""
+    """Return the pages of a book by their files, each a function that makes it: contents, lessons, exercises,
+    the index, and solutions where they are wanted. Each stands alone; those of exercises run the one script
+    that keeps answers."""
     env = html.environment_of(tuple(folders), book.lang)
     book_pages = list(_pages(book))
     shared = _of_book(book) | {"paper": paper, "sheet": {"course": book.title}, "variant": ""}
@@ -351,8 +354,8 @@ def _html_pieces(env: Environment, book: Book, lesson: LessonText, names: Mappin
 
 
 class LessonPages:
-    """Lesson in a page, in one piece or step by step; ``address`` leads to an exercise, a lesson or a section, and is empty
-    where a link has no place to lead to."""
+    """Lesson in a page, in one piece or step by step; ``address`` leads to an exercise, a lesson or a
+    section, and is empty where a link has no place to lead to."""
 
     def __init__(self, env: Environment, lesson: LessonText, address: Callable[[TextLink], str]):
         self._env, self._address = env, address

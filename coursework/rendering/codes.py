@@ -24,7 +24,10 @@ def qr_svg(text: str) -> str:
     dark = qr_modules(text)
     high, wide = dark.shape
     path = "".join(f"M{start} {row}h{length}v1h-{length}z" for row, start, length in _runs(dark))
-    return f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {wide} {high}" width="{wide}" height="{high}"><path d="{path}"/></svg>'
+    return (
+        f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {wide} {high}" width="{wide}" '
+        f'height="{high}"><path d="{path}"/></svg>'
+    )
 
 
 def qr_modules(text: str) -> np.ndarray:

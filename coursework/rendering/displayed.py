@@ -15,8 +15,8 @@ class DisplayedAnimation(Animation):
     """An animation with its page."""
 
     def html(self, *, is_answered: bool = True) -> str:
-        """Return one page with a handle and a slider for the driver's angle: it fetches nothing, and without script stands
-        still. Before the questions are answered it shows the figure alone."""
+        """Return one page with a handle and a slider for the driver's angle: it fetches nothing, and without
+        script stands still. Before the questions are answered it shows the figure alone."""
         return renderer_of(self.variant.exercise.folder).motion_html(self, is_answered=is_answered)
 
 

@@ -141,7 +141,8 @@ def _filled(pattern: str, *parts: object) -> str:
 
 
 def _check_places(folders: Sequence[Path]) -> None:
-    """Raise for a course's template beside the folders, where templates had names as ``_sheet_body``: no page reads it there."""
+    """Raise for a course's template beside the folders, where templates had names as ``_sheet_body``: no page
+    reads it there."""
     for file in (path for folder in folders for path in folder.glob("*.j2")):
         name = _FOLDER_WORDS.sub("", file.name)
         found = {

@@ -34,9 +34,11 @@ def context(
     *,
     numbered: bool = True,
 ) -> dict[str, object]:
-    """Return the names that the template of a feedback sheet sees, the body of its worked solution among them.
+    """Return the names that the template of a feedback sheet sees, the body of its worked solution among
+    them.
 
-    ``end`` is that of the templates' names, and ``write`` renders one; the rest is as for :func:`views.context`.
+    ``end`` is that of the templates' names, and ``write`` renders one; the rest is as for
+    :func:`views.context`.
     """
     solution_sheet = sheet.solution
     solution = solution_sheet and {
@@ -107,9 +109,22 @@ def legend(sheets: Iterable[FeedbackSheet], lang: str) -> tuple[Meaning, ...]:
 
 
 _ORDER = (
-    "correct", "accepted", "follow_through", "partial", "missing_unit", "slip", "not_drawn", "mistake", "usual", "wrong_unit",
-    "wrong", "otherwise", "unreadable", "to_mark", "missing",
-)  # fmt: skip
+    "correct",
+    "accepted",
+    "follow_through",
+    "partial",
+    "missing_unit",
+    "slip",
+    "not_drawn",
+    "mistake",
+    "usual",
+    "wrong_unit",
+    "wrong",
+    "otherwise",
+    "unreadable",
+    "to_mark",
+    "missing",
+)
 
 
 def _worth(kind: str, lines: Sequence[FeedbackLine], lang: str) -> str:
@@ -171,7 +186,8 @@ _BETWEEN = re.compile(r"[\s;|{}()]+|,(?=\s)")  #: entries of a list
 
 
 def _plainly(text: str) -> str:
-    """Return a text without what differs by habit alone: spaces, the decimal sign, the sign of minus, brackets round it."""
+    """Return a text without what differs by habit alone: spaces, the decimal sign, the sign of minus,
+    brackets round it."""
     return "".join(text.split()).translate(_SPELLED_ALIKE).strip("()")
 
 
@@ -203,8 +219,8 @@ _PIECE = re.compile(r"\$\$?[^$]*\$\$?|`[^`]*`|(?P<end>[.?!…](?=\s|\Z)|\n\s*\n)
 def question_heading(line: FeedbackLine) -> str:
     """Return what a question is called beside its answer, Markdown.
 
-    The first sentence with its symbol; where it has none, all up to the sentence that asks; else the first sentence, and
-    the symbol behind it.
+    The first sentence with its symbol; where it has none, all up to the sentence that asks; else the first
+    sentence, and the symbol behind it.
     """
     symbol, sentences = _bare(line.question.symbol), _sentences(line.question.prompt)
     if symbol:

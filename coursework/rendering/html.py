@@ -1,4 +1,5 @@
-"""Sheets as one self-contained HTML page: nothing fetched; in a handout a script that keeps its answers and one to draw with, none elsewhere."""
+"""Sheets as one self-contained HTML page: nothing fetched; in a handout a script that keeps its answers and
+one to draw with, none elsewhere."""
 
 from __future__ import annotations
 
@@ -45,7 +46,8 @@ def page(folders: Sequence[Path], sheet: views.Sheet, paper: str = "a4") -> str:
 
 @lru_cache(maxsize=32)
 def environment_of(folders: tuple[Path, ...], lang: str, goes_dark: bool = True) -> Environment:
-    """Return the environment of HTML templates; its drawings go dark with the page, unless a platform decides what that is."""
+    """Return the environment of HTML templates; its drawings go dark with the page, unless a platform decides
+    what that is."""
     image = partial(svg_image, goes_dark=goes_dark)
     filters: dict[str, Callable[..., str]] = {
         "markup": lambda text: markup.to_html(text, lang),
@@ -89,18 +91,20 @@ def construction(folders: Sequence[Path], drawn: Construction) -> str:
 
 
 def svg_image(svg: str, alt: str, goes_dark: bool = True) -> str:
-    """Return a drawing as an image inside the page, which goes dark with it; one of other colours is turned dark by the page."""
+    """Return a drawing as an image inside the page, which goes dark with it; one of other colours is turned
+    dark by the page."""
     shown = darkened(svg) if goes_dark else svg
     turned = ' class="white"' if goes_dark and shown == svg else ""
     return f'<img src="{svg_address(shown)}" alt="{escape(alt)}"{turned}>'
 
 
 def svg_address(svg: str) -> str:
-    """Return the address of a drawing that is in the address itself: a fifth shorter than in base64, and letters that can be
-    compressed. No character in it ends an attribute."""
+    """Return the address of a drawing that is in the address itself: a fifth shorter than in base64, and
+    letters that can be compressed. No character in it ends an attribute."""
     return "data:image/svg+xml," + quote(svg, safe=" /=,;()'")
 
 
 def _css_string(text: str) -> str:
-    """Return a text in a style sheet, each of its characters by number: none ends the string, or the style sheet."""
+    """Return a text in a style sheet, each of its characters by number: none ends the string, or the style
+    sheet."""
     return '"' + "".join(f"\\{ord(char):06x}" for char in text) + '"'

@@ -14,13 +14,20 @@ _UNTYPED = ("blank", "millimetre")  #: boxes for a pen
 
 
 def keeping(handouts: Sequence[Handout], student: str, lang: str, *, numbered: bool = False) -> Markup:
-    """JSON for a page that holds these exercises; ``numbered`` where their boxes' names begin with their places.
+    """JSON for a page that holds these exercises; ``numbered`` where their boxes' names begin with their
+    places.
 
     A seed is a text, since the numbers of a script have sixteen digits.
     """
     variants = [f"{handout.exercise}-{handout.seed}" for handout in handouts]
     settings = {
-        "key": " ".join(["coursework", *(f"{handout.exercise} {handout.seed} v{handout.version}" for handout in handouts), student]),
+        "key": " ".join(
+            [
+                "coursework",
+                *(f"{handout.exercise} {handout.seed} v{handout.version}" for handout in handouts),
+                student,
+            ]
+        ),
         "file": variants[0] if len(variants) == 1 else f"{variants[0]}-{len(variants)}",
         "student": student,
         "lang": lang,
@@ -34,7 +41,7 @@ def keeping(handouts: Sequence[Handout], student: str, lang: str, *, numbered: b
             for number, handout in enumerate(handouts, 1)
         ],
         "words": words(lang)["page"],
-    }  # fmt: skip
+    }
     return in_script(settings)
 
 

@@ -64,7 +64,8 @@ def environment_of(folders: tuple[Path, ...], lang: str) -> Environment:
 
 
 def _width(figure: Figure | Picture, room: float, tall: float) -> str:
-    """Return the width of a figure in mm: its own, for which it is laid out, or less where the room does not do."""
+    """Return the width of a figure in mm: its own, for which it is laid out, or less where the room does not
+    do."""
     wide, high = figure.size_mm
     return f"{wide * min(1.0, room / wide, tall / high):.1f}"
 

@@ -93,7 +93,8 @@ def stepped(
 
 
 def _with_files(html: str, files: dict[str, bytes], address: str) -> str:
-    """Return HTML whose drawings are files, named by their content, which browsers fetch as they come into sight."""
+    """Return HTML whose drawings are files, named by their content, which browsers fetch as they come into
+    sight."""
 
     def put(svg: bytes) -> str:
         name = f"{sha256(svg).hexdigest()[:16]}.svg"
@@ -119,8 +120,9 @@ def _with_files(html: str, files: dict[str, bytes], address: str) -> str:
 def steps(pieces: Sequence[Piece]) -> Iterator[tuple[Piece, ...]]:
     """Yield the pieces of a lesson in steps.
 
-    A step begins at each heading, and ends with the answer to a question, or where a screen is full. What a sentence
-    announces stays with it, what poses an example to complete stays together, and its blanks with its last lines.
+    A step begins at each heading, and ends with the answer to a question, or where a screen is full. What a
+    sentence announces stays with it, what poses an example to complete stays together, and its blanks with
+    its last lines.
     """
     step: list[Piece] = []
     for piece, stays in _small(pieces):
@@ -158,8 +160,8 @@ def _room(piece: Piece) -> float:
 
 
 def _small(pieces: Sequence[Piece]) -> Iterator[tuple[Piece, bool]]:
-    """Yield the pieces with running text cut into paragraphs that may stand apart, and whether each stays with the one
-    before."""
+    """Yield the pieces with running text cut into paragraphs that may stand apart, and whether each stays
+    with the one before."""
     posing: set[int] = set()
     for index, piece in enumerate(pieces):
         if isinstance(piece, BlanksPiece):

@@ -22,7 +22,8 @@ from coursework.scenes.animation import Animation
 def page(
     folders: Sequence[Path], animation: Animation, paper: str = "a4", *, is_answered: bool = True
 ) -> str:
-    """Return the whole page, in the variant's language; the figure alone before the questions are answered."""
+    """Return the whole page, in the variant's language; the figure alone before the questions are
+    answered."""
     variant = animation.variant
     names = {
         "lang": variant.lang,
@@ -38,8 +39,9 @@ def page(
 def context(animation: Animation, *, is_answered: bool = True) -> dict[str, Any]:
     """Return the names that ``motion/_body.html.j2`` sees.
 
-    Before its questions are answered, a variant moves as its figure does and nothing more: no paths, vectors and values,
-    no driving angle that is an answer, and places to the tenth of a millimetre on paper, as one measures them.
+    Before its questions are answered, a variant moves as its figure does and nothing more: no paths, vectors
+    and values, no driving angle that is an answer, and places to the tenth of a millimetre on paper, as one
+    measures them.
     """
     variant = animation.variant
     lang = variant.lang
@@ -123,10 +125,14 @@ def _svg(tracks: Sequence[MotionTrack], size: tuple[float, float], first: int, a
         if track.point:
             more += f' data-point="{escape(track.point)}"'
         lines.append(track.svg(first, more))
-    return "\n".join([
-        f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width} {height}" role="img" '
-        f'aria-label="{escape(animation.words)}">',
-        f'<rect width="{width}" height="{height}" fill="#fff"/>',
-        '<g fill="none" stroke="#000" stroke-linecap="round" stroke-linejoin="round">', *lines, "</g>",
-        "</svg>",
-    ])  # fmt: skip
+    return "\n".join(
+        [
+            f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width} {height}" role="img" '
+            f'aria-label="{escape(animation.words)}">',
+            f'<rect width="{width}" height="{height}" fill="#fff"/>',
+            '<g fill="none" stroke="#000" stroke-linecap="round" stroke-linejoin="round">',
+            *lines,
+            "</g>",
+            "</svg>",
+        ]
+    )

@@ -42,8 +42,8 @@ _FENCE = re.compile(
 def notebook(folders: Sequence[Path], handout: Handout, *, collected: bool = False) -> str:
     """Return the notebook to hand in, as JSON text, valid nbformat 4.5; the same text for the same handout.
 
-    It holds the statement, the data and a cell for the answers: nothing in it checks them. One that a platform has
-    ``collected`` asks for no name and is not sent back.
+    It holds the statement, the data and a cell for the answers: nothing in it checks them. One that a
+    platform has ``collected`` asks for no name and is not sent back.
     """
     return _of_handout(folders, handout, "notebook/notebook.md.j2", {"collected": True} if collected else {})
 
@@ -74,8 +74,8 @@ def _of_handout(folders: Sequence[Path], handout: Handout, template: str, more: 
 
 
 def paper(folders: Sequence[Path], handed: Paper, *, collected: bool = False) -> str:
-    """Return the notebook of a paper, as JSON text, valid nbformat 4.5: an answers cell an exercise, which says whose it is.
-    ``collected`` is as for :func:`notebook`."""
+    """Return the notebook of a paper, as JSON text, valid nbformat 4.5: an answers cell an exercise, which
+    says whose it is. ``collected`` is as for :func:`notebook`."""
     env = _environment(tuple(folders), handed.heading.lang)
     more = ({"collected": True},) * len(handed.handouts) if collected else ()
     names = papers.context(handed, "md.j2", partial(render, env), more)
@@ -89,8 +89,8 @@ def paper(folders: Sequence[Path], handed: Paper, *, collected: bool = False) ->
 
 
 def feedback(folders: Sequence[Path], feedback_sheet: FeedbackSheet | FeedbackPaper) -> str:
-    """Feedback as a notebook to read, as JSON text, valid nbformat 4.5; where another variant is offered, cells that
-    open and check it."""
+    """Feedback as a notebook to read, as JSON text, valid nbformat 4.5; where another variant is offered,
+    cells that open and check it."""
     if isinstance(feedback_sheet, FeedbackPaper):
         env = _environment(tuple(folders), feedback_sheet.heading.lang)
         names = papers.context(feedback_sheet, "md.j2", partial(render, env))
@@ -141,8 +141,9 @@ def lesson(
     install: str,
     pictures: Mapping[str, Mapping[str, str]],
 ) -> str:
-    """Return the notebook of a lesson: its Markdown as it is, its fences as code cells; before the first that imports the package, one that
-    says how to install it where it is missing. ``pictures``, by name and type in base64, are attached to the cells that show them."""
+    """Return the notebook of a lesson: its Markdown as it is, its fences as code cells; before the first that
+    imports the package, one that says how to install it where it is missing. ``pictures``, by name and type
+    in base64, are attached to the cells that show them."""
     env = _environment(tuple(folders), lang)
     names = {"words": words(lang), "package": DISTRIBUTION, "install": install}
     guard = f"```python\n{render(env, 'notebook/_import.md.j2', names)}\n```\n"

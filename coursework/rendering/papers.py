@@ -63,7 +63,8 @@ def points_of(paper: AnyPaper) -> float:
 def context(paper: AnyPaper, end: str, write: Body, files: Sequence[Names] = ()) -> dict[str, Any]:
     """Return the names that a paper's template sees.
 
-    ``end`` is that of the templates' names, ``typ.j2``; ``files`` are names that each exercise's template sees besides.
+    ``end`` is that of the templates' names, ``typ.j2``; ``files`` are names that each exercise's template
+    sees besides.
     """
     heading, kind = paper.heading, _KINDS[type(paper)]
     exercises = exercises_of(paper, end, write, files)
@@ -133,7 +134,8 @@ def _heading_of(paper: AnyPaper, number: int, title: str) -> str:
 
 
 def _start_mm(sheet: views.Sheet) -> int:
-    """Return the room that an exercise takes up to its first question: it begins where a page has so much left."""
+    """Return the room that an exercise takes up to its first question: it begins where a page has so much
+    left."""
     if isinstance(sheet, FeedbackSheet):
         return 45
     handout, figure = views.handout_of(sheet), views.figure_of(sheet)
@@ -180,7 +182,8 @@ def logo_svg(logo: Logo) -> str:
     wide, high = (int.from_bytes(logo.data[start : start + 4], "big") for start in (16, 20))
     return (
         f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {wide} {high}" width="{wide}" height="{high}">'
-        f'<image width="{wide}" height="{high}" href="data:image/png;base64,{base64.b64encode(logo.data).decode()}"/></svg>'
+        f'<image width="{wide}" height="{high}" '
+        f'href="data:image/png;base64,{base64.b64encode(logo.data).decode()}"/></svg>'
     )
 
 
@@ -205,8 +208,8 @@ def _text(data: bytes) -> str:
 
 
 def page(folders: Sequence[Path], paper: AnyPaper, size: str = "a4") -> str:
-    """Return a paper as one web page that fetches nothing; that of a student to fill in runs a script that keeps answers, and one
-    to draw with where there is something to draw."""
+    """Return a paper as one web page that fetches nothing; that of a student to fill in runs a script that
+    keeps answers, and one to draw with where there is something to draw."""
     env = html.environment_of(tuple(folders), paper.heading.lang)
     return render(env, f"{TEMPLATES[type(paper)]}.html.j2", page_names(env, paper) | {"paper": size})
 
@@ -241,7 +244,8 @@ def tex(
     figures: Sequence[str],
     polygons: Sequence[str],
 ) -> str:
-    """Return the LaTeX source of a paper; beside it are the PDF of each exercise's figure and that of its polygons."""
+    """Return the LaTeX source of a paper; beside it are the PDF of each exercise's figure and that of its
+    polygons."""
     env, lang = latex.environment_of(tuple(folders), paper.heading.lang), paper.heading.lang
     files = [
         {"figure_file": drawing, "polygons_file": two} for drawing, two in zip(figures, polygons, strict=True)

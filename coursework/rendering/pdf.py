@@ -77,8 +77,9 @@ def _context(folders: Sequence[Path], sheet: views.Sheet) -> dict[str, Any]:
 
 
 def fonts_of(folders: Sequence[Path]) -> tuple[str, ...]:
-    """Return the folders of fonts that a course brings, ``fonts`` in its templates: for letters that the typesetter's own fonts
-    lack. The system's fonts are never asked, so that a sheet is the same everywhere."""
+    """Return the folders of fonts that a course brings, ``fonts`` in its templates: for letters that the
+    typesetter's own fonts lack. The system's fonts are never asked, so that a sheet is the same
+    everywhere."""
     return tuple(str(folder / "fonts") for folder in folders if (folder / "fonts").is_dir())
 
 
@@ -149,7 +150,8 @@ def files(typst_source: str) -> dict[str, bytes]:
 
 
 def compile_pdf(typst_source: str, folders: Sequence[Path] = ()) -> bytes:
-    """Return the tagged PDF (PDF/UA-1 and PDF/A-2a) of a Typst source; the same bytes for the same source and fonts.
+    """Return the tagged PDF (PDF/UA-1 and PDF/A-2a) of a Typst source; the same bytes for the same source and
+    fonts.
 
     ``folders`` of templates bring fonts of their own; a character that no font draws is a square.
 
@@ -160,12 +162,14 @@ def compile_pdf(typst_source: str, folders: Sequence[Path] = ()) -> bytes:
 
 
 def compile_settled(typst_source: str, folders: Sequence[Path] = ()) -> bytes:
-    """Return the PDF of a source whose blocks move to the next page where they find no room, as :func:`compile_pdf` does.
+    """Return the PDF of a source whose blocks move to the next page where they find no room, as
+    :func:`compile_pdf` does.
 
-    Where blocks move is chosen from layouts of each part alone, so that a change in one moves nothing in another. Then the
-    whole is laid out with these choices, and only its page numbers have to settle.
+    Where blocks move is chosen from layouts of each part alone, so that a change in one moves nothing in
+    another. Then the whole is laid out with these choices, and only its page numbers have to settle.
 
-    Raises BadStatement as :func:`compile_pdf` does, and where page numbers do not settle though no block moves any more.
+    Raises BadStatement as :func:`compile_pdf` does, and where page numbers do not settle though no block
+    moves any more.
     """
     counter = count(1)
     numbered = _MOVING.sub(lambda call: f'{call[0]}number: "{next(counter)}", ', drawn(typst_source, folders))
@@ -177,17 +181,19 @@ def compile_settled(typst_source: str, folders: Sequence[Path] = ()) -> bytes:
         document, is_settled = _laid_out(files(_told(_SETTLED, chosen, numbered)), folders, **_TAGGED)
     if not is_settled:
         raise BadStatement(
-            "the pages do not settle, so references would name wrong pages; change what moves about: the last figures of"
+            "the pages do not settle, so references would name wrong pages; change what moves about: "
+            "the last figures of"
             " a chapter, or a template of the course"
         )
     return document
 
 
 def _choices(draft: str, folders: Sequence[Path]) -> str:
-    """Return what a source chooses for each of its blocks that move, as entries of the typesetter's dictionary.
+    """Return what a source chooses for each of its blocks that move, as entries of the typesetter's
+    dictionary.
 
-    What is moved moves what comes after it, so the typesetter's attempts may end before a layout agrees with its choices: the
-    next ones begin with these. Blocks that go to and fro are left where they were last.
+    What is moved moves what comes after it, so the typesetter's attempts may end before a layout agrees with
+    its choices: the next ones begin with these. Blocks that go to and fro are left where they were last.
     """
     chosen = ""
     for _ in range(_LAYOUTS):
@@ -291,8 +297,8 @@ def environment_of(folders: tuple[Path, ...], lang: str) -> Environment:
 
 
 def _drawing(figure: Figure | Picture | Beginning, alt: str, room: tuple[float, float] | None = None) -> str:
-    """Return the figure inside the source, which so stands alone: an SVG without letters, its size, and the letters; and by
-    how much it is made smaller for a room of so many mm that it was not laid out for."""
+    """Return the figure inside the source, which so stands alone: an SVG without letters, its size, and the
+    letters; and by how much it is made smaller for a room of so many mm that it was not laid out for."""
     width, height = figure.size_mm
     listed = json.dumps([_letters(letter, width) for letter in figure.letters()], ensure_ascii=False)
     svg, letters, words = map(markup.typst_string, (figure.bare_svg(), listed, alt))
@@ -302,8 +308,9 @@ def _drawing(figure: Figure | Picture | Beginning, alt: str, room: tuple[float, 
 
 
 def _letters(label: Letters, width: float) -> tuple[object, ...]:
-    """Return a label for the typesetter, mm: the middle of its baseline from the middle of the upper edge, and its runs,
-    each with its size, how far it stands below the baseline, and how far it goes back to where it starts."""
+    """Return a label for the typesetter, mm: the middle of its baseline from the middle of the upper edge,
+    and its runs, each with its size, how far it stands below the baseline, and how far it goes back to where
+    it starts."""
     runs = [
         (run.text, run.italic, *(round(x * SIZE, 2) for x in (run.size, -run.rise, run.back)))
         for run in label.runs

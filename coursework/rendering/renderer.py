@@ -29,7 +29,8 @@ _SCREEN = 96  #: pixels an inch of a page on a screen
 
 
 class Renderer:
-    """Renders sheets, and papers of several sheets, through the templates of these folders, the first that has one.
+    """Renders sheets, and papers of several sheets, through the templates of these folders, the first that
+    has one.
 
     The same sheet gives the same bytes. Safe to share between threads; not to be carried into a
     forked process. ``paper`` is ``a4`` or ``letter``; another raises :class:`UnknownName`.
@@ -82,8 +83,8 @@ class Renderer:
         return pdf.undrawn(text, self.template_folders)
 
     def html(self, sheet: AnySheet | AnyPaper) -> str:
-        """Return a sheet or a paper as one web page that fetches nothing. A student's own runs one script, which keeps the answers
-        typed in it and hands them in as a file; any other runs none."""
+        """Return a sheet or a paper as one web page that fetches nothing. A student's own runs one script,
+        which keeps the answers typed in it and hands them in as a file; any other runs none."""
         from coursework.rendering import html, papers
 
         page: Callable[..., str] = papers.page if _is_paper(sheet) else html.page
@@ -97,8 +98,8 @@ class Renderer:
     ) -> str:
         """Return a sheet or a paper as LaTeX source for pdflatex.
 
-        ``figures`` name the PDF files beside it that hold each exercise's figure, that of :meth:`figure_pdf`, if any, and
-        ``polygons`` those of :meth:`polygons_pdf`.
+        ``figures`` name the PDF files beside it that hold each exercise's figure, that of :meth:`figure_pdf`,
+        if any, and ``polygons`` those of :meth:`polygons_pdf`.
         """
         from coursework.rendering import latex, papers
 
@@ -108,7 +109,8 @@ class Renderer:
         )
 
     def figure_pdf(self, sheet: Handout | AnswerSheet) -> bytes | None:
-        """Return the figure that a sheet shows, as a PDF of its own, several on a page each; nothing when it shows none."""
+        """Return the figure that a sheet shows, as a PDF of its own, several on a page each; nothing when it
+        shows none."""
         from coursework.rendering import views
 
         figure, more = views.figure_of(sheet), [drawing for drawing, _ in views.more_figures(sheet)]
@@ -121,7 +123,8 @@ class Renderer:
         return pages([(drawing.svg(), drawing.size_mm[0]) for drawing in (figure, *more)])
 
     def polygons_pdf(self, sheet: Handout | AnswerSheet) -> bytes | None:
-        """Return the drawings of a solution's polygons, one a page of its own size; nothing when it has none."""
+        """Return the drawings of a solution's polygons, one a page of its own size; nothing when it has
+        none."""
         from coursework.rendering import views
 
         drawings = views.polygon_drawings(sheet)
@@ -132,14 +135,15 @@ class Renderer:
         return pages([(figure.svg(), figure.size_mm[0]) for figure in drawings])
 
     def white_shares(self, sheet: Handout | Paper) -> list[float]:
-        """Return for each page of a sheet or a paper, as printed, the largest share of its height that is white."""
+        """Return for each page of a sheet or a paper, as printed, the largest share of its height that is
+        white."""
         from coursework.rendering.white_space import PPI, white_share
 
         return [white_share(png) for png in self.images(sheet, PPI)]
 
     def attendance_pdf(self, lists: ExamLists, *, public: bool = False) -> bytes:
-        """Return the attendance lists of an exam as a tagged PDF, each room from an odd page on; if ``public``, the list of
-        rooms and seats for the door."""
+        """Return the attendance lists of an exam as a tagged PDF, each room from an odd page on; if
+        ``public``, the list of rooms and seats for the door."""
         from coursework.rendering import attendance, pdf
 
         source = attendance.source(self.template_folders, lists, self.paper, public=public)
@@ -153,13 +157,15 @@ class Renderer:
         return pdf.compile_settled(source, self.template_folders)
 
     def book_pages(self, book: Book, *, solutions: bool = True) -> Mapping[str, Callable[[], str]]:
-        """Return a book as pages by their files, each a function that makes it; they fetch nothing and lead to one another."""
+        """Return a book as pages by their files, each a function that makes it; they fetch nothing and lead
+        to one another."""
         from coursework.rendering import books
 
         return books.pages(self.template_folders, book, self.paper, solutions=solutions)
 
     def feedback_notebook(self, sheet: FeedbackSheet | FeedbackPaper) -> str:
-        """Feedback as a notebook to read (JSON, nbformat 4.5), with cells to try another variant where one is offered."""
+        """Feedback as a notebook to read (JSON, nbformat 4.5), with cells to try another variant where one is
+        offered."""
         from coursework.rendering import notebook
 
         return notebook.feedback(self.template_folders, sheet)
@@ -171,8 +177,8 @@ class Renderer:
         return html.construction(self.template_folders, construction)
 
     def notebook(self, sheet: Handout | Paper, *, collected: bool = False) -> str:
-        """Return a handout or a paper as a notebook to hand in (JSON, nbformat 4.5): an answers cell an exercise, and nothing that
-        checks an answer; ``collected`` by a platform that knows whose it is."""
+        """Return a handout or a paper as a notebook to hand in (JSON, nbformat 4.5): an answers cell an
+        exercise, and nothing that checks an answer; ``collected`` by a platform that knows whose it is."""
         from coursework.rendering import notebook
 
         made: Callable[..., str] = notebook.paper if _is_paper(sheet) else notebook.notebook
@@ -187,8 +193,8 @@ class Renderer:
     def lesson(
         self, name: str, text: str, lang: str, install: str, pictures: Mapping[str, Mapping[str, str]]
     ) -> str:
-        """Return a lesson's Markdown as a notebook (JSON, nbformat 4.5); ``install`` is the command that installs what it runs,
-        ``pictures`` are attached to the cells that show them."""
+        """Return a lesson's Markdown as a notebook (JSON, nbformat 4.5); ``install`` is the command that
+        installs what it runs, ``pictures`` are attached to the cells that show them."""
         from coursework.rendering import notebook
 
         return notebook.lesson(self.template_folders, name, text, lang, install, pictures)
@@ -208,7 +214,8 @@ class Renderer:
         )
 
     def motion_html(self, animation: Animation, *, is_answered: bool = True) -> str:
-        """Return a mechanism in motion as one web page that fetches nothing; its one script is in the page."""
+        """Return a mechanism in motion as one web page that fetches nothing; its one script is in the
+        page."""
         from coursework.rendering import motion_page
 
         return motion_page.page(self.template_folders, animation, self.paper, is_answered=is_answered)

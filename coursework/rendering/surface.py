@@ -1,4 +1,5 @@
-"""Drawing surface of a sheet: which boxes a drawing fills, which links give directions, and the settings of its script."""
+"""Drawing surface of a sheet: which boxes a drawing fills, which links give directions, and the settings of
+its script."""
 
 from __future__ import annotations
 
@@ -97,7 +98,8 @@ def has_surface(exercise: Exercise, record: Mapping[str, Any]) -> bool:
 
 
 def drawn_figure(texts: Mapping[tuple[int, str], str], attempt: int, handout: Handout) -> Figure | None:
-    """Return what a student drew on the surface of a sheet, with the names of the questions; None where nothing can be shown.
+    """Return what a student drew on the surface of a sheet, with the names of the questions; None where
+    nothing can be shown.
 
     Parameters
     ----------
@@ -117,7 +119,8 @@ def drawn_figure(texts: Mapping[tuple[int, str], str], attempt: int, handout: Ha
 
 
 def surface(handout: Handout) -> DrawingSurface | None:
-    """Return the drawing surface of a sheet: of paper to draw on, else of a joint graph; none without either."""
+    """Return the drawing surface of a sheet: of paper to draw on, else of a joint graph; none without
+    either."""
     if size_mm := handout.drawing_mm or handout.surface_mm:
         return _paper(handout, size_mm)
     graph = next((question for question in handout.questions if question.kind in _GRAPHS), None)
@@ -135,7 +138,8 @@ def _paper(handout: Handout, size_mm: tuple[int, int]) -> DrawingSurface:
         if question.unit.endswith("/mm")
     )
     units = {"mm", "°", *(unit for _, unit in scales)}
-    # Where nothing is printed to draw on, the statement does not give the directions of the links: they may be asked.
+    # Where nothing is printed to draw on, the statement does not give the directions of the links: they may
+    # be asked.
     figure = handout.figure if handout.drawing_mm else None
     links = tuple(_links(figure)) if isinstance(figure, Figure) else ()
     return DrawingSurface(
@@ -196,7 +200,8 @@ def _links(figure: Figure) -> Iterator[DirectionOfLink]:
 
 
 def _name(start: complex, end: complex, names: Sequence[tuple[complex, str]], *, is_guide: bool) -> str:
-    """Return the names of the ends of a link together; of a guide those of its start and of the first point on it."""
+    """Return the names of the ends of a link together; of a guide those of its start and of the first point
+    on it."""
     size = abs(end - start)
     first = next((name for at, name in names if abs(at - start) < 1e-6 * size), "")
     second = next((name for at, name in names if abs(at - end) < 1e-6 * size), "")

@@ -30,12 +30,12 @@ Sheet: TypeAlias = Handout | AnswerSheet | FeedbackSheet
 ROOM_BESIDE, ROOM_ALONE = (112.0, 62.0), (165.0, 72.0)
 ROOM_DATA = 46.0  #: width of the data beside it, whose longer lines are broken
 ROOM_STEP = (53.0, 200.0)  #: of a step of a construction, three of which stand side by side
-#: What a figure, the paper to draw on below it and the statement above it take of a page together; the least and the most
-#: of it that is the figure's, and a line of text, mm; letters in one.
+#: What a figure, the paper to draw on below it and the statement above it take of a page together; the least
+#: and the most of it that is the figure's, and a line of text, mm; letters in one.
 _PAGE, _BY_PAPER, _LINE_MM, _LETTERS = 229.0, (48.0, 66.0), 5.5, 95
 GUIDE_TOGETHER = 16  #: rows at most of a marking guide that no page's end may cut
-#: So many questions at most leave a page some height, and each that there are fewer some more, mm; so many at least
-#: go on to a second page, and leave the first some.
+#: So many questions at most leave a page some height, and each that there are fewer some more, mm; so many at
+#: least go on to a second page, and leave the first some.
 _FEW, _LEFT, _EACH = 8, 14.0, 6.0
 _MANY, _LEFT_BY_MANY = 14, (14.0, 22.0)  #: with the data beside the figure, and below it
 _FULL = 25  #: so many at least fill the second page too
@@ -56,8 +56,8 @@ def _kind(sheet: Sheet) -> str:
 
 
 def context(sheet: Sheet, index: int = 0, *, numbered: bool = True) -> dict[str, object]:
-    """Return the names that a page's template sees; ``index`` is that of the exercise in a paper, 0 where it stands alone, and
-    its questions have it before their numbers where they are ``numbered``."""
+    """Return the names that a page's template sees; ``index`` is that of the exercise in a paper, 0 where it
+    stands alone, and its questions have it before their numbers where they are ``numbered``."""
     handout = handout_of(sheet)
     prefix = f"{index}." if index and numbered else ""
     return {
@@ -137,13 +137,15 @@ def _data_beside(sheet: Sheet) -> bool:
 
 
 def _data_width(handout: Handout) -> str:
-    """Of the data beside a figure: what they take where each surely is on one line, else all the room they have."""
+    """Of the data beside a figure: what they take where each surely is on one line, else all the room they
+    have."""
     texts = (given_words(datum, handout.lang) for datum in handout.given if not datum.is_number)
     return "auto" if all(_surely_fits(text, ROOM_DATA, handout.lang) for text in texts) else f"{ROOM_DATA}mm"
 
 
 def polygon_drawings(sheet: Sheet) -> tuple[Figure | Beginning, ...]:
-    """Return the drawings of a solution's polygons in the order in which it shows them: steps, then the whole."""
+    """Return the drawings of a solution's polygons in the order in which it shows them: steps, then the
+    whole."""
     stated = sheet.polygons if isinstance(sheet, AnswerSheet) else ()
     drawings: list[Figure | Beginning] = []
     for polygon in stated:
@@ -168,7 +170,8 @@ def points_number(points: float, lang: str) -> str:
 
 
 def renumbered(text: str, lang: str, prefix: str) -> str:
-    """Return the questions that a sentence names by their numbers, with what stands before these in a paper."""
+    """Return the questions that a sentence names by their numbers, with what stands before these in a
+    paper."""
     if not prefix:
         return text
     noun, marking = words(lang)["sheet"]["question"], words(lang)["marking"]
@@ -182,7 +185,8 @@ def given_formula(given: GivenValue) -> str:
 
 
 def given_words(given: GivenValue, lang: str) -> str:
-    """Return a given case as Markdown: ``Mode : ouvert`` where its symbol is a word, ``$B$ : à gauche`` else."""
+    """Return a given case as Markdown: ``Mode : ouvert`` where its symbol is a word, ``$B$ : à gauche``
+    else."""
     word = re.fullmatch(r"\\(?:text|mathrm)\{([^{}]+)\}", given.symbol)
     name = word[1].capitalize() if word else f"${given.symbol}$"
     return f"{name}{words(lang)['sheet']['colon']} {given.value}"
@@ -312,7 +316,8 @@ _LINE = 85  #: characters of a formula written out that a printed line holds
 
 @lru_cache(maxsize=256)
 def _broken(member: str) -> tuple[str, ...]:
-    """Return a member of a chain as lines of an aligned formula, cut before its signs where it is too wide."""
+    """Return a member of a chain as lines of an aligned formula, cut before its signs where it is too
+    wide."""
     terms = _terms(member)
     width = len(to_line(member, "en"))
     count = min(len(terms), -(-width // _LINE))
@@ -354,7 +359,8 @@ def margin_words(answer: Answer, lang: str) -> str:
     return solution_words["margins"].get(answer.question.kind, "{0}").format(margin)
 
 
-#: What a table's row on one line takes, without an arrow over a letter and with one, mm; and the sides of a cell.
+#: What a table's row on one line takes, without an arrow over a letter and with one, mm; and the sides of a
+#: cell.
 _ROW, _ROW_WITH_ARROW, _SIDES = 6.2, 7.0, 4.5
 _ARROW = re.compile(r"\\(?:vec|overrightarrow)")
 _BRACKET = re.compile(r"\\left|\\right.\^?")
@@ -363,14 +369,39 @@ _MACRO = re.compile(r"\\(?:[A-Za-z]+|.)", re.DOTALL)
 _LOW = frozenset(
     rf"\{name}"
     for name in (
-        *LETTERS, "num", "mathrm", "text", "dot", "ddot", "vec", "overrightarrow", "left", "right", "times", "cdot", "pm",
-        "circ", "parallel", "perp", "infty", "prime", "sin", "cos", "tan", "mkern", ",", " ", ";", ":",
+        *LETTERS,
+        "num",
+        "mathrm",
+        "text",
+        "dot",
+        "ddot",
+        "vec",
+        "overrightarrow",
+        "left",
+        "right",
+        "times",
+        "cdot",
+        "pm",
+        "circ",
+        "parallel",
+        "perp",
+        "infty",
+        "prime",
+        "sin",
+        "cos",
+        "tan",
+        "mkern",
+        ",",
+        " ",
+        ";",
+        ":",
     )
-)  # fmt: skip
+)
 #: Blocks of Markdown, which are not lines of text.
 _BLOCK = re.compile(r"\s*(?:[#>*+|-]\s|\d+[.)]\s)|.*(?:\n|\$\$)", re.DOTALL)
 
-#: Widths of the columns of a solution's summary and of a polygon's table, mm; what is left is the answer's, or the length's.
+#: Widths of the columns of a solution's summary and of a polygon's table, mm; what is left is the answer's,
+#: or the length's.
 SUMMARY_MM = {"number": 10, "quantity": 24, "answer": 84, "margin": 36, "points": 16}
 POLYGON_MM = {"name": 24, "direction": 22, "length": 59, "segment": 31, "paper": 14, "value": 20}
 
@@ -390,8 +421,8 @@ def polygon_row(row: SideRow, lang: str) -> str:
 
 
 def _row(lang: str, *cells: tuple[str, float]) -> str:
-    """Return the height of a row of cells, each of Markdown and so many mm wide: where all are surely on one line it is
-    told, since the typesetter would set the row twice to find it."""
+    """Return the height of a row of cells, each of Markdown and so many mm wide: where all are surely on one
+    line it is told, since the typesetter would set the row twice to find it."""
     if not all(_is_low(text) and _surely_fits(text, wide, lang) for text, wide in cells):
         return "auto"
     return f"{_ROW_WITH_ARROW if any(_ARROW.search(text) for text, _ in cells) else _ROW}mm"
@@ -421,7 +452,8 @@ def _surely_fits(markdown: str, wide: float, lang: str) -> bool:
 
 
 def offered(question: Question) -> tuple[tuple[str, str], ...]:
-    """Return the choices as a sheet prints them: letter and label; the letter is empty on a sheet issued without."""
+    """Return the choices as a sheet prints them: letter and label; the letter is empty on a sheet issued
+    without."""
     letters = question.letters or ("",) * len(question.choices)
     return tuple((letter, label) for letter, (_, label) in zip(letters, question.choices, strict=True))
 
@@ -434,7 +466,8 @@ _CHOICES_MM, _BOX_MM, _BETWEEN_MM = (
 
 
 def columns(question: Question, lang: str) -> int:
-    """In how many columns the choices stand: as many as hold each label on one line, one row of four at most."""
+    """In how many columns the choices stand: as many as hold each label on one line, one row of four at
+    most."""
     count = len(question.choices)
     for wanted in {3: (3,), 4: (4, 2)}.get(count, (3, 2)):
         room = _CHOICES_MM / wanted - _BOX_MM - _BETWEEN_MM
@@ -449,7 +482,8 @@ def column_of(question: Question, lang: str) -> str:
 
 
 def python_name(name: str) -> str:
-    """Return a quantity's public name as a Python variable: the same, unless Python keeps the word for itself."""
+    """Return a quantity's public name as a Python variable: the same, unless Python keeps the word for
+    itself."""
     return name + "_" if keyword.iskeyword(name) else name
 
 

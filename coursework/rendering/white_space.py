@@ -12,7 +12,8 @@ _INK = 250  #: the lightest grey that counts as ink
 
 
 def white_share(png: bytes) -> float:
-    """Return the largest share of a page's height that is white between two marks of ink, the footer among them."""
+    """Return the largest share of a page's height that is white between two marks of ink, the footer among
+    them."""
     samples = pixels(png)
     rows = np.flatnonzero((samples[..., :3] < _INK).any(axis=(1, 2)))
     return float(np.diff(rows).max()) / len(samples) if len(rows) > 1 else 1.0
@@ -40,7 +41,8 @@ def pixels(png: bytes) -> np.ndarray:
 
 
 def _unfiltered(kind: int, line: np.ndarray, above: np.ndarray, channels: int) -> np.ndarray:
-    """Return a row of samples from its differences to its neighbours, as the five filters of PNG take them."""
+    """Return a row of samples from its differences to its neighbours, as the five filters of PNG take
+    them."""
     if kind == 0:
         return line
     if kind == 1:

@@ -16,8 +16,8 @@ _LONG = 2400  #: pixels of the longer side, enough for a symbol of 15 mm on A4
 
 @dataclass(frozen=True)
 class PageCode:
-    """A symbol that was read: its text and, in pixels of the picture, its corners as printed: top left, top right,
-    bottom right, bottom left, shape ``(4, 2)``."""
+    """A symbol that was read: its text and, in pixels of the picture, its corners as printed: top left, top
+    right, bottom right, bottom left, shape ``(4, 2)``."""
 
     text: str
     corners: np.ndarray

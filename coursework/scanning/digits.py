@@ -18,7 +18,8 @@ EMPTY = -1
 #: Classes of the net: the ten digits, an empty box, a minus sign, and what is none of these.
 BLANK, OTHER = 10, 12  # 11 is the minus sign
 
-#: A digit, or an emptiness, of at least this confidence is taken; what is below goes to a person (docs/scans.md: how often it errs).
+#: A digit, or an emptiness, of at least this confidence is taken; what is below goes to a person
+#: (docs/scans.md: how often it errs).
 CONFIDENT = 0.995
 
 #: A doubted number is taken if it is a right answer of its variant with at least this probability.
@@ -46,8 +47,9 @@ def read_digits(cells: NDArray[np.uint8]) -> tuple[NDArray[np.int64], NDArray[np
     Returns
     -------
     digits, confidences
-        Shape ``(n,)`` each. A confidence is the calibrated probability that the box holds this digit, or nothing;
-        it is low where the box holds something else: a letter, a struck-out digit, two digits, a part of one.
+        Shape ``(n,)`` each. A confidence is the calibrated probability that the box holds this digit, or
+        nothing; it is low where the box holds something else: a letter, a struck-out digit, two digits, a
+        part of one.
     """
     return read_candidates(cells)[:2]
 
@@ -55,8 +57,8 @@ def read_digits(cells: NDArray[np.uint8]) -> tuple[NDArray[np.int64], NDArray[np
 def read_candidates(
     cells: NDArray[np.uint8],
 ) -> tuple[NDArray[np.int64], NDArray[np.float64], NDArray[np.float64]]:
-    """Return the digit in each box and its confidence, as :func:`read_digits` does, and the probability of each digit
-    from 0 to 9, shape ``(n, 10)``."""
+    """Return the digit in each box and its confidence, as :func:`read_digits` does, and the probability of
+    each digit from 0 to 9, shape ``(n, 10)``."""
     chances = probabilities(prepared(cells))
     likeliest = chances[:, : BLANK + 1].argmax(axis=1)
     confidences = chances[np.arange(len(likeliest)), likeliest]
@@ -87,8 +89,8 @@ def _resized(cell: NDArray[np.uint8]) -> Floats:
 
 
 def _darkness(grey: Floats) -> Floats:
-    """Return the darkness of boxes relative to their paper, each on the scale of the darkest ink inside; ink fainter
-    than a quarter stays faint."""
+    """Return the darkness of boxes relative to their paper, each on the scale of the darkest ink inside; ink
+    fainter than a quarter stays faint."""
     paper = np.maximum(np.percentile(grey, 90, axis=(1, 2), keepdims=True), 1.0)
     dark = np.clip(1 - grey / paper, 0, 1)
     inside = dark[:, OUTLINE:-OUTLINE, OUTLINE:-OUTLINE]

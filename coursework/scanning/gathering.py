@@ -241,8 +241,9 @@ def _gather_paper(
 def _confirmed(
     combined: Gathered, part: Part, settled: Sequence[_Settled | AnswerCard | None], parts: Parts
 ) -> Sequence[_Settled | AnswerCard | None]:
-    """Return the pieces of an answer as settled if some are doubted and it is probably a right answer of this variant:
-    that somebody wrote a wrong one which may be read so is rarer than that a sure digit is wrong (docs/scans.md)."""
+    """Return the pieces of an answer as settled if some are doubted and it is probably a right answer of this
+    variant: that somebody wrote a wrong one which may be read so is rarer than that a sure digit is wrong
+    (docs/scans.md)."""
     doubted = [item for item in settled if isinstance(item, AnswerCard)]
     if not doubted or None in settled or not all(card.waits == DOUBTED for card in doubted):
         return settled
@@ -326,10 +327,14 @@ def _add_answer(
     ids = tuple(sorted({name for item in values for name in item.pages}))
     combined.answers.append(
         ScannedAnswer(
-            student, *part, texts[0] if len(texts) == 1 else parts.joined(part, texts), ids, any(item.by_hand for item in values),
+            student,
+            *part,
+            texts[0] if len(texts) == 1 else parts.joined(part, texts),
+            ids,
+            any(item.by_hand for item in values),
             tuple(s for item in values for s in item.pictures),
         )
-    )  # fmt: skip
+    )
 
 
 def _readings_of(
@@ -405,9 +410,20 @@ def _card(
 ) -> AnswerCard:
     position = printed.place
     return AnswerCard(
-        student, paper.code, position.exercise, position.seed, position.part, position.coordinate, printed.coordinates, printed.what, waits, candidate,
-        confidence, tuple(readings), tuple(s.page for s in readings),
-    )  # fmt: skip
+        student,
+        paper.code,
+        position.exercise,
+        position.seed,
+        position.part,
+        position.coordinate,
+        printed.coordinates,
+        printed.what,
+        waits,
+        candidate,
+        confidence,
+        tuple(readings),
+        tuple(s.page for s in readings),
+    )
 
 
 def _why(readings: Sequence[FieldReading], texts: set[str]) -> str:

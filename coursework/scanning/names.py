@@ -1,7 +1,8 @@
 """The name that is printed on an answer page, compared with that of the paper that its code says.
 
-Names are drawn as they were printed, and looked for where the page has its own. Only another name of the class that is
-plainly there contradicts a code: what is stained, torn, written over or printed with other fonts does not.
+Names are drawn as they were printed, and looked for where the page has its own. Only another name of the
+class that is plainly there contradicts a code: what is stained, torn, written over or printed with other
+fonts does not.
 """
 
 from __future__ import annotations
@@ -32,7 +33,10 @@ _NAME = """#set document(title: "-")
 #set text(lang: {lang}, font: "Libertinus Serif", size: 10.5pt, number-type: "lining")
 #set page(width: {width}mm, height: {height}mm, margin: 0pt)
 """
-_LINE = """box(width: {width}mm, height: {height}mm, align(horizon, grid(columns: (auto, 1fr), column-gutter: 0.6em, align: bottom, {label}, strong({name}))))"""
+_LINE = (
+    "box(width: {width}mm, height: {height}mm, align(horizon, grid(columns: (auto, 1fr), "
+    "column-gutter: 0.6em, align: bottom, {label}, strong({name}))))"
+)
 
 
 @lru_cache(4)
@@ -68,7 +72,8 @@ def name_strips(
 def other_name(
     paper: np.ndarray, box: Box, owner: str, names: Sequence[str], lang: str, folders: Sequence[Path] = ()
 ) -> str:
-    """Return whose name of the class is printed on a page, where it is plainly another than its owner's; else nothing.
+    """Return whose name of the class is printed on a page, where it is plainly another than its owner's; else
+    nothing.
 
     Parameters
     ----------
@@ -108,9 +113,12 @@ def _ink_about(paper: np.ndarray, box: Box) -> np.ndarray | None:
     if min(top, left) < 0 or bottom > paper.shape[0] or right > paper.shape[1]:
         return None
     cut = opencv().resize(
-        paper[top:bottom, left:right].astype(np.float32), None, fx=_SCALE / scale, fy=_SCALE / scale,
+        paper[top:bottom, left:right].astype(np.float32),
+        None,
+        fx=_SCALE / scale,
+        fy=_SCALE / scale,
         interpolation=opencv().INTER_AREA,
-    )  # fmt: skip
+    )
     return np.clip(1 - cut / max(1.0, float(np.median(cut))), 0, 1)
 
 

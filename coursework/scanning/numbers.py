@@ -2,12 +2,14 @@
 
 The rules, for a row that is not empty:
 
-- anything in the free box or beside the boxes, a stroke across boxes, a box that is not surely empty or one digit: a person reads it;
+- anything in the free box or beside the boxes, a stroke across boxes, a box that is not surely empty or one
+  digit: a person reads it;
 - the digits before the comma stand together, at the start of their boxes or at its end, none missing between;
 - the decimals stand together from the comma on, and only after a digit before it;
 - nothing runs through a box from above it to below, as the edge of a shadow does;
 - a one between digits does not lean as the bar of a fraction does, unless the number is the right answer;
-- a sign is one level stroke, and stands before digits; so does that of the power; a power stands after digits;
+- a sign is one level stroke, and stands before digits; so does that of the power; a power stands after
+  digits;
 - the unit is said where its box is ticked.
 """
 
@@ -33,8 +35,8 @@ from coursework.scanning.strokes import (
 from coursework.scanning.ticks import EMPTY, TICKED, UNSURE, tick
 from coursework.sheets.answer_pages import AnswerField, Box
 
-#: Pictures of boxes ``(n, h, w)``, dark ink on light, to digits, -1 for an empty one, the confidence in each, and if the
-#: reader can tell, the probability of each digit from 0 to 9, ``(n, 10)``.
+#: Pictures of boxes ``(n, h, w)``, dark ink on light, to digits, -1 for an empty one, the confidence in each,
+#: and if the reader can tell, the probability of each digit from 0 to 9, ``(n, 10)``.
 Reader = Callable[[np.ndarray], tuple[np.ndarray, ...]]
 
 LEAST = CONFIDENT  #: the confidence in a box below which a person reads it
@@ -66,7 +68,8 @@ class FieldText:
 
 @dataclass(frozen=True)
 class _ReadNumber:
-    """One box as read: its digit, -1 for an empty one, the confidence in it, and the digits that it may be."""
+    """One box as read: its digit, -1 for an empty one, the confidence in it, and the digits that it may
+    be."""
 
     digit: int = -1
     confidence: float = 1.0
@@ -104,7 +107,8 @@ def number(page: Straight, field: AnswerField, reader: Reader, least: float = LE
 
 
 def _is_bare(page: Straight, box: Box, stroke: float) -> bool:
-    """Return True if a box is certainly empty, even of short strokes, since the whole of a sign may be one."""
+    """Return True if a box is certainly empty, even of short strokes, since the whole of a sign may be
+    one."""
     return is_bare(page, box) and not has_stroke(page, box, stroke)
 
 

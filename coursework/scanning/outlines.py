@@ -1,9 +1,9 @@
 """Positions of the printed boxes on a flattened page: their light outlines are searched some millimetres
 around.
 
-A perspective by four marks leaves what a curved or folded page adds. Boxes near each other move together, and so do the
-lines at a corner of a large one: each group is looked for on its own, a smooth surface goes through what was found, and a
-group that was not seen takes the surface.
+A perspective by four marks leaves what a curved or folded page adds. Boxes near each other move together, and
+so do the lines at a corner of a large one: each group is looked for on its own, a smooth surface goes through
+what was found, and a group that was not seen takes the surface.
 """
 
 from __future__ import annotations
@@ -154,7 +154,8 @@ def _centre(group: Group) -> np.ndarray:
 
 
 def _lines(ink: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """By how much each pixel is darker than what lies on both its sides: across upright lines, and across level ones."""
+    """By how much each pixel is darker than what lies on both its sides: across upright lines, and across
+    level ones."""
     cv2 = opencv()
     upright, level = (
         cv2.subtract(np.minimum(np.roll(ink, _THIN, axis), np.roll(ink, -_THIN, axis)), ink)

@@ -204,9 +204,18 @@ def _text(field: AnswerField, text: str, cases: Sequence[str], papers: Papers, c
 def _scanned_field(field: AnswerField, text: str, confidence: float, waits: str, crop: str) -> ScannedField:
     box = field.whole
     return ScannedField(
-        field.exercise, field.seed, field.part, field.coordinate, field.coordinates, field.what, text, round(confidence, 4), waits,
-        crop, (box.x, box.y, box.width, box.height),
-    )  # fmt: skip
+        field.exercise,
+        field.seed,
+        field.part,
+        field.coordinate,
+        field.coordinates,
+        field.what,
+        text,
+        round(confidence, 4),
+        waits,
+        crop,
+        (box.x, box.y, box.width, box.height),
+    )
 
 
 def typed_page(papers: Papers, code: str, number: int, least: float) -> PageScan:

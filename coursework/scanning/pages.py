@@ -1,4 +1,5 @@
-"""A picture to what its page says: which page it is, each answer on it, and what waits for a person, and why."""
+"""A picture to what its page says: which page it is, each answer on it, and what waits for a person, and
+why."""
 
 from __future__ import annotations
 
@@ -36,8 +37,8 @@ WAITS = (
 class FieldRead:
     """Reading of one field: its ``text`` (empty for a blank answer) and the least ``confidence`` of its
     boxes. If a person must look, ``waits`` is the key of the reason (of :data:`WAITS`), ``crop`` is the
-    picture, grey, 10 pixels per mm, and the text is only the likeliest reading; ``candidates`` are what a doubted
-    number may be, with probabilities. ``cases`` are the ticked choices."""
+    picture, grey, 10 pixels per mm, and the text is only the likeliest reading; ``candidates`` are what a
+    doubted number may be, with probabilities. ``cases`` are the ticked choices."""
 
     field: AnswerField
     text: str

@@ -1,4 +1,5 @@
-"""Pictures of pages as a scanner or a telephone gives them: PDF, PNG, JPEG, TIFF of several pages; grey, one at a time."""
+"""Pictures of pages as a scanner or a telephone gives them: PDF, PNG, JPEG, TIFF of several pages; grey, one
+at a time."""
 
 from __future__ import annotations
 
@@ -99,7 +100,8 @@ def _of_pdf(path: Path) -> Iterator[PageImage]:
 
 
 def _drawn(pdfium: Any, document: Any, number: int, path: Path) -> np.ndarray:
-    """Return a page of a PDF, rendered at 300 dots per inch, or at fewer if it would exceed the largest page."""
+    """Return a page of a PDF, rendered at 300 dots per inch, or at fewer if it would exceed the largest
+    page."""
     try:
         page = document[number]
         width, height = page.get_width(), page.get_height()
@@ -140,8 +142,8 @@ def _render_apart(path: Path, number: int, scale: float) -> np.ndarray:
 
 
 def _is_scanned(pdfium: Any, page: Any) -> bool:
-    """Return whether a page is what scanners write: few pictures, of no more dots than a page has, and the words that were
-    found on them. Anything else may take any time to be drawn."""
+    """Return whether a page is what scanners write: few pictures, of no more dots than a page has, and the
+    words that were found on them. Anything else may take any time to be drawn."""
     pictures = dots = 0
     for count, item in enumerate(page.get_objects(max_depth=1)):
         if item.type == pdfium.raw.FPDF_PAGEOBJ_IMAGE:
@@ -245,7 +247,8 @@ def page_count(path: Path) -> int:
     size = path.stat().st_size
     if count > _FEW and size < count * LEAST_OF_PAGE:
         raise BadPicture(
-            "{file} has {count} pages in {size} bytes: no scan is so small; scan the sheets, or name the file that the scanner wrote",
+            "{file} has {count} pages in {size} bytes: no scan is so small; scan the sheets, or name "
+            "the file that the scanner wrote",
             file=path.name,
             count=f"{count:,}",
             size=f"{size:,}",

@@ -65,8 +65,9 @@ class ScanQueue:
 
     @cached_property
     def cards(self) -> list[AnswerCard]:
-        """Pages and papers that nobody knows, then question after question, all students together; of each question last the
-        numbers that are probably read right, which a person compares with their pictures at a glance."""
+        """Pages and papers that nobody knows, then question after question, all students together; of each
+        question last the numbers that are probably read right, which a person compares with their pictures at
+        a glance."""
         return sorted(
             self.found.cards,
             key=lambda c: (self._rank(c), c.is_likely, c.student, c.seed, c.coordinate, c.part),
@@ -216,8 +217,12 @@ def page(queue: ScanQueue, content: Mapping[str, Any]) -> str:
         "papers": list(_papers(queue)) if any(card["sort"] == "pages" for card in cards) else [],
     }
     names = {
-        "lang": queue.lang, "languages": languages(), "said": words(queue.lang, "scan"), "data": in_script(data), "paper": "a4",
-    }  # fmt: skip
+        "lang": queue.lang,
+        "languages": languages(),
+        "said": words(queue.lang, "scan"),
+        "data": in_script(data),
+        "paper": "a4",
+    }
     return render(environment_of(folder.template_folders, queue.lang), "scan/queue.html.j2", names)
 
 

@@ -1,7 +1,7 @@
 """Server of the queue's page on this machine, which takes back what is typed there; nothing else reaches it.
 
-The address holds a random word, so that other programs and users of the machine do not find it. Pages of other places cannot
-send anything, and only the page, its pictures and its data are served.
+The address holds a random word, so that other programs and users of the machine do not find it. Pages of
+other places cannot send anything, and only the page, its pictures and its data are served.
 """
 
 from __future__ import annotations
@@ -104,9 +104,14 @@ class _Handler(BaseHTTPRequestHandler):
         self.close_connection = True
         self.send_response(status)
         headers = {
-            "Content-Type": kind, "Content-Length": str(len(data)), "Connection": "close", "Cache-Control": "no-store",
-            "X-Content-Type-Options": "nosniff", "X-Frame-Options": "DENY", "Referrer-Policy": "no-referrer",
-        }  # fmt: skip
+            "Content-Type": kind,
+            "Content-Length": str(len(data)),
+            "Connection": "close",
+            "Cache-Control": "no-store",
+            "X-Content-Type-Options": "nosniff",
+            "X-Frame-Options": "DENY",
+            "Referrer-Policy": "no-referrer",
+        }
         for name, text in headers.items():
             self.send_header(name, text)
         self.end_headers()

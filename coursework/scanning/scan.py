@@ -1,7 +1,8 @@
-"""The job: scans become answers, a queue for people, and a list of what could not be read; every page is in one of them.
+"""The job: scans become answers, a queue for people, and a list of what could not be read; every page is in
+one of them.
 
-What is written is a function of all scans that were ever named, what was typed, and what was issued: neither the order of
-files, nor how often the job was run or stopped, makes a difference.
+What is written is a function of all scans that were ever named, what was typed, and what was issued: neither
+the order of files, nor how often the job was run or stopped, makes a difference.
 """
 
 from __future__ import annotations
@@ -164,7 +165,8 @@ def read_files(
     least: float = LEAST,
     progress: Progress = lambda done, of: None,
 ) -> tuple[list[ScannedFile], int]:
-    """Read the pages of what is named that were not read before, and keep each; gives the files, and how many pages were read.
+    """Read the pages of what is named that were not read before, and keep each; gives the files, and how many
+    pages were read.
 
     Raises
     ------
@@ -246,7 +248,8 @@ def _is_to_be_read(desk: Desk, papers: Papers, name: str) -> bool:
 
 
 class _shared:
-    """Work shared by so many processes, or done here by one; results come in the order of what was asked, few ahead."""
+    """Work shared by so many processes, or done here by one; results come in the order of what was asked, few
+    ahead."""
 
     def __init__(self, count: int):
         self._count = count
@@ -283,7 +286,8 @@ def write_read(
     spreadsheet: Spreadsheet,
     least: float,
 ) -> ScanBook:
-    """Write what pages say together: answers, the queue, what was rejected, what is missing, and the list of pages."""
+    """Write what pages say together: answers, the queue, what was rejected, what is missing, and the list of
+    pages."""
     pages = [as_told(scanned_page, papers, typed, least) for scanned_page in pages]
     printed = papers_asked(papers, pages)
     combined = together(papers, printed, pages, typed)
@@ -398,9 +402,13 @@ def _write_pages(
         }
         asking = [f for f in page.fields if f.part]
         read = {
-            "of": paper.pages if paper else "", "fields": len(asking) if paper else "",
-            "read": sum(not f.waits for f in asking) + combined.confirmed.get(scanned_page.id, 0) if paper else "", "waiting": combined.waits.get(scanned_page.id, 0) if paper or page.what == LOST else "",
-        }  # fmt: skip
+            "of": paper.pages if paper else "",
+            "fields": len(asking) if paper else "",
+            "read": sum(not f.waits for f in asking) + combined.confirmed.get(scanned_page.id, 0)
+            if paper
+            else "",
+            "waiting": combined.waits.get(scanned_page.id, 0) if paper or page.what == LOST else "",
+        }
         table.write({**source, "what": state, **owner, **read, "picture": picture})
         book.copies += scanned_page.is_copy
         if scanned_page.is_copy:

@@ -1,7 +1,7 @@
 """Stored results of each page, so that a stopped job continues, and another run adds more scans.
 
-A page is known by the digest of its file and its number there, never by a file's name or place; what is kept of it is written
-whole or not at all.
+A page is known by the digest of its file and its number there, never by a file's name or place; what is kept
+of it is written whole or not at all.
 """
 
 from __future__ import annotations
@@ -172,7 +172,8 @@ def stored_files(out: Path) -> list[ScannedFile]:
     except (ValueError, TypeError) as fault:
         raise BadInput(
             (
-                "{path} is not as 'coursework scan' wrote it ({fault}): remove it and name all scans again, or choose"
+                "{path} is not as 'coursework scan' wrote it ({fault}): remove it and name all scans "
+                "again, or choose"
                 " another --out"
             ),
             path=path,

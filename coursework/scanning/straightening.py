@@ -1,7 +1,7 @@
 """A page laid flat: from its corner marks and its code to a picture of 10 pixels a millimetre, evenly lit.
 
-Marks give a perspective; what it leaves (a curved page of a photograph, a fold) is measured where outlines of boxes
-are seen, and the boxes are looked for there.
+Marks give a perspective; what it leaves (a curved page of a photograph, a fold) is measured where outlines of
+boxes are seen, and the boxes are looked for there.
 """
 
 from __future__ import annotations
@@ -35,9 +35,9 @@ class NotStraight(Exception):
 class Straight:
     """A page laid flat.
 
-    ``paper`` is grey as scanned; ``ink`` is the same beside the paper around: 255 paper, 0 black. Both have 10 pixels a
-    millimetre. ``shifts`` say how far off its place, in mm, what is printed lies. ``marks`` is how many of the four
-    were found; ``noise`` the spread of bare paper in ``ink``, of 255.
+    ``paper`` is grey as scanned; ``ink`` is the same beside the paper around: 255 paper, 0 black. Both have
+    10 pixels a millimetre. ``shifts`` say how far off its place, in mm, what is printed lies. ``marks`` is
+    how many of the four were found; ``noise`` the spread of bare paper in ``ink``, of 255.
     """
 
     paper: np.ndarray
@@ -170,7 +170,8 @@ def _candidates(spots: np.ndarray, across: tuple[complex, complex], page: Answer
 def _four_marks(
     cv2: Any, candidates: list[np.ndarray], code: PageCode, page: AnswerPage
 ) -> np.ndarray | None:
-    """Return the perspective of the four candidates that places the code best; None if none places it well."""
+    """Return the perspective of the four candidates that places the code best; None if none places it
+    well."""
     best, least = None, _CODE_OFF
     for four in product(*candidates):
         spots = np.array(four, np.float32)

@@ -30,8 +30,8 @@ _RIM = 1.3  #: mm from a box's outline within which ink of a neighbour ends
 
 @dataclass(frozen=True)
 class InkPieces:
-    """Ink that hangs together: ``labels`` numbers it pixel by pixel, 0 where there is none; for each piece its
-    ``boxes``: left, top, width, height in pixels, and ``areas`` in pixels (row 0 is the paper)."""
+    """Ink that hangs together: ``labels`` numbers it pixel by pixel, 0 where there is none; for each piece
+    its ``boxes``: left, top, width, height in pixels, and ``areas`` in pixels (row 0 is the paper)."""
 
     labels: np.ndarray
     boxes: np.ndarray
@@ -105,10 +105,13 @@ def cuts_a_corner(page: Straight, box: Box) -> bool:
     inside, above, below, left, right = (
         connected.inside(connected.labels[part]) >= limit
         for part, limit in (
-            ((within, within), least), (np.s_[:rim], least / 3), (np.s_[-rim:], least / 3),
-            ((within, np.s_[:rim]), least / 3), ((within, np.s_[-rim:]), least / 3),
+            ((within, within), least),
+            (np.s_[:rim], least / 3),
+            (np.s_[-rim:], least / 3),
+            ((within, np.s_[:rim]), least / 3),
+            ((within, np.s_[-rim:]), least / 3),
         )
-    )  # fmt: skip
+    )
     return bool((inside & (above | below) & (left | right))[1:].any())
 
 
@@ -152,8 +155,8 @@ def cells(page: Straight, boxes: Sequence[Box]) -> tuple[list[np.ndarray], str]:
     """Return pictures of the boxes of a row, each with its own ink alone, 255 paper; and the fault of ink
     that lies in several boxes.
 
-    A stroke that leaves its box is cut off at the outline, and erased from the box in which it ends. The fault is
-    ``struck`` if ink runs across several boxes, ``joined`` if it joins two of them.
+    A stroke that leaves its box is cut off at the outline, and erased from the box in which it ends. The
+    fault is ``struck`` if ink runs across several boxes, ``joined`` if it joins two of them.
     """
     ink, span = row_ink(page, boxes)
     connected = pieces(255 - ink > STRONG)

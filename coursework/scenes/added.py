@@ -59,7 +59,8 @@ class Motor:
     def __post_init__(self) -> None:
         if self.no_load_speed is not None and not self.torque * self.no_load_speed > 0:
             raise WrongValue(
-                "a motor turns the way that its torque pulls: torque and no_load_speed have one sign and are not 0; found {torque:g} N*m and {no_load_speed:g} rad/s",
+                "a motor turns the way that its torque pulls: torque and no_load_speed have one sign "
+                "and are not 0; found {torque:g} N*m and {no_load_speed:g} rad/s",
                 torque=self.torque,
                 no_load_speed=self.no_load_speed,
             )
@@ -73,8 +74,9 @@ class Motor:
 class SceneData:
     """Data that a scene adds to its exercise.
 
-    ``friction``: by joint, a coefficient for a slide, a pair of coefficient and radius of the journal (mm) for a pin;
-    ``lengths``: of slides that bear on both edges, mm; ``gravity``: its acceleration, m/s^2, complex.
+    ``friction``: by joint, a coefficient for a slide, a pair of coefficient and radius of the journal (mm)
+    for a pin; ``lengths``: of slides that bear on both edges, mm; ``gravity``: its acceleration, m/s^2,
+    complex.
     """
 
     bodies: Mapping[str, BodyMass] = field(default_factory=dict)

@@ -1,8 +1,9 @@
 """Animation of an exercise: its figure over the cycle of its driver, paths of points, and vectors.
 
-The figure is the statement's own, asked again at every angle, unless the solution states a :class:`~coursework.solution.Film`
-with one that can move. The points that leave a trace and carry vectors are those of the solution's ``MECHANISM``, or of its
-function ``motion`` of quantities, called once with arrays over the cycle::
+The figure is the statement's own, asked again at every angle, unless the solution states a
+:class:`~coursework.solution.Film` with one that can move. The points that leave a trace and carry vectors are
+those of the solution's ``MECHANISM``, or of its function ``motion`` of quantities, called once with arrays
+over the cycle::
 
     def motion(r2, theta2, omega2):
         A = polar(r2, theta2)
@@ -49,8 +50,9 @@ _LONGEST = 0.3  #: of the longest vector, over the size of the mechanism
 def told_by_motion(variant: Variant) -> tuple[str, ...]:
     """Return the ids of the parts whose answer one sees at a glance when the mechanism moves.
 
-    Those are choices that hold for the whole cycle, such as whether a guide rotates; where a film of the solution moves
-    in place of the figure, all parts. What is read from a figure to scale with a ruler is not among them.
+    Those are choices that hold for the whole cycle, such as whether a guide rotates; where a film of the
+    solution moves in place of the figure, all parts. What is read from a figure to scale with a ruler is not
+    among them.
     """
     exercise = variant.exercise
     if exercise.film is not None:
@@ -104,8 +106,8 @@ class Animation(Reel):
 
     @cached_property
     def points(self) -> Mapping[str, Moving]:
-        """Points over the instants: of those that the solution states, the ones that the figure names; in a film, whose
-        words name them, all."""
+        """Points over the instants: of those that the solution states, the ones that the figure names; in a
+        film, whose words name them, all."""
         return self._points_at(self.angles)
 
     def _points_at(self, angles: np.ndarray) -> Mapping[str, Moving]:
@@ -132,7 +134,8 @@ class Animation(Reel):
 
     @cached_property
     def crank(self) -> tuple[complex, np.ndarray] | None:
-        """Pivot of the driver, and a point that turns with it at every instant, mm; None where the figure draws none.
+        """Pivot of the driver, and a point that turns with it at every instant, mm; None where the figure
+        draws none.
 
         A named point comes before another, and one farther from the pivot before a nearer.
         """
@@ -252,7 +255,8 @@ class Animation(Reel):
 
     @cached_property
     def words(self) -> str:
-        """Description of the picture for readers who cannot see it: the statement's own words, or the film's."""
+        """Description of the picture for readers who cannot see it: the statement's own words, or the
+        film's."""
         from coursework.language.typography import typeset
 
         section = (
@@ -264,8 +268,8 @@ class Animation(Reel):
         return typeset(text, self.variant.lang) or self.title
 
     def svg(self, effects: Sequence[str] | None = None) -> str:
-        """Return the moving figure as SVG without scripts, with its effects or with others; it stands still for readers
-        who prefer reduced motion."""
+        """Return the moving figure as SVG without scripts, with its effects or with others; it stands still
+        for readers who prefer reduced motion."""
         return moving_svg(
             self.drawing(self.effects if effects is None else effects),
             order=self.order,
@@ -320,9 +324,11 @@ def _without_sizes(frame: Sequence[Element]) -> tuple[Element, ...]:
 
 
 def turning_arm(way: np.ndarray, turned: np.ndarray) -> tuple[complex, complex]:
-    """Return centre and arm of a point that turns with a body, by least squares; an arm of 0 where it does not.
+    """Return centre and arm of a point that turns with a body, by least squares; an arm of 0 where it does
+    not.
 
-    ``turned`` are the body's directions over the instants, unit complex numbers, shape ``(n,)`` as ``way``, mm.
+    ``turned`` are the body's directions over the instants, unit complex numbers, shape ``(n,)`` as ``way``,
+    mm.
     """
     around = np.stack([np.ones_like(turned), turned], axis=-1)
     pivot, arm = np.linalg.lstsq(around, way, rcond=None)[0]

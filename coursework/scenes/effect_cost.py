@@ -1,4 +1,5 @@
-"""Cost and influence of each effect of a scene: its computing time, and the change of the outputs without it."""
+"""Cost and influence of each effect of a scene: its computing time, and the change of the outputs without
+it."""
 
 from __future__ import annotations
 
@@ -80,9 +81,14 @@ class EffectBudget:
             if worth.needed or worth.effect not in FORCES:
                 continue
             if worth.effect == FLYWHEEL:
-                yield "flywheel evens out a motion in time; over a cycle at a constant rate it changes nothing"
+                yield (
+                    "flywheel evens out a motion in time; over a cycle at a constant rate it changes nothing"
+                )
             elif most is None or most.largest_part == 0:
-                yield f"{worth.effect} changes nothing here: the scene has no data for it, or asks nothing that it moves"
+                yield (
+                    f"{worth.effect} changes nothing here: the scene has no data for it, or asks nothing "
+                    "that it moves"
+                )
             elif most.largest_part <= self.tolerance:
                 yield (
                     f"the scene could do without {worth.effect}: nothing shown changes by more than {limit} "
@@ -92,7 +98,8 @@ class EffectBudget:
             most = worth.most
             if most is not None and most.largest_part > self.tolerance:
                 yield (
-                    f"the scene lacks {worth.effect}, for which it has data: {most.output} would change by up to "
+                    f"the scene lacks {worth.effect}, for which it has data: {most.output} would "
+                    "change by up to "
                     f"{most.largest:.3g} {most.unit} ({100 * most.largest_part:.2g} %)"
                 )
             elif most is not None:
@@ -150,8 +157,14 @@ def _times(scenes: Mapping[str, Scene], run: Run) -> dict[str, list[float]]:
 
 
 def _worth(
-    effect: str, scene: Scene, other: Scene | None, full: SceneTable, run: Run, times: Mapping[str, Sequence[float]], needed: str
-) -> EffectInfluence:  # fmt: skip
+    effect: str,
+    scene: Scene,
+    other: Scene | None,
+    full: SceneTable,
+    run: Run,
+    times: Mapping[str, Sequence[float]],
+    needed: str,
+) -> EffectInfluence:
     if other is None:
         return EffectInfluence(effect, float("nan"), float("nan"), (), needed)
     differences = [all_of_it - without for all_of_it, without in zip(times[""], times[effect], strict=True)]

@@ -1,9 +1,9 @@
 """Effects that a scene may request, and the quantities that an exercise shows of each.
 
-What belongs to an effect is what the solution's ``EFFECTS`` say. Of an effect that they leave out: the unknowns of the
-loops are positions, and their rates are velocities and accelerations; without loops, of the parts asked, those are
-positions that move with the driver's angle alone, velocities those that its speed changes, accelerations those that its
-acceleration changes.
+What belongs to an effect is what the solution's ``EFFECTS`` say. Of an effect that they leave out: the
+unknowns of the loops are positions, and their rates are velocities and accelerations; without loops, of the
+parts asked, those are positions that move with the driver's angle alone, velocities those that its speed
+changes, accelerations those that its acceleration changes.
 """
 
 from __future__ import annotations
@@ -44,7 +44,8 @@ def check_turns(what: str, exercise: CourseExercise) -> None:
     jack = exercise.spec.driver.jack if exercise.spec.driver else None
     if jack is not None:
         raise WrongValue(
-            "{what} belongs to a crank that turns; {exercise} is driven by the length {length} of a jack, from {shortest} to "
+            "{what} belongs to a crank that turns; {exercise} is driven by the length {length} of a "
+            "jack, from {shortest} to "
             "{longest}",
             what=Message(what),
             exercise=exercise.name,

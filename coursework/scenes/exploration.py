@@ -1,4 +1,5 @@
-"""Exploration of a driven mechanism with freely chosen data: whether it closes, its figure, paths, and quantities over a turn."""
+"""Exploration of a driven mechanism with freely chosen data: whether it closes, its figure, paths, and
+quantities over a turn."""
 
 from __future__ import annotations
 
@@ -58,7 +59,8 @@ _LONGEST = 24  #: letters of a number
 
 
 def parameters(exercise: CourseExercise[Any], typical: Mapping[str, Any]) -> tuple[Parameter, ...]:
-    """Return what may be changed of a driven exercise, with bounds round its typical values; the driver's angle last.
+    """Return what may be changed of a driven exercise, with bounds round its typical values; the driver's
+    angle last.
 
     A quantity that the driver's position decides is none of them.
     """
@@ -70,8 +72,10 @@ def parameters(exercise: CourseExercise[Any], typical: Mapping[str, Any]) -> tup
     shown = _used(exercise)
     size = max(lengths, default=1.0)
     found = [
-        _parameter(n, spec, typical[n], size) for n, spec in exercise.spec.given.items() if n in shown and n not in left
-    ]  # fmt: skip
+        _parameter(n, spec, typical[n], size)
+        for n, spec in exercise.spec.given.items()
+        if n in shown and n not in left
+    ]
     if driver.jack is not None:
         shortest, longest = (float(typical[name]) for name in driver.jack.limits)
         return (*found, Parameter(driver.moved, "mm", shortest, longest))
@@ -170,7 +174,8 @@ class Exploration:
         return {n: point.position for n, point in self._animation.stated_points(self._angles).items()}
 
     def curves(self, effect: str) -> tuple[Curve, ...]:
-        """Return the first quantities of an effect over the steps: ``position`` … ``acceleration``, or ``forces``."""
+        """Return the first quantities of an effect over the steps: ``position`` … ``acceleration``, or
+        ``forces``."""
         return self._curves[effect]
 
     @cached_property
@@ -207,8 +212,8 @@ class Exploration:
 
     @property
     def ranges(self) -> list[tuple[float, float]]:
-        """Ranges of the driver in which the mechanism closes, each from its first step to its last; one that passes 0
-        degrees goes from the larger angle to the smaller."""
+        """Ranges of the driver in which the mechanism closes, each from its first step to its last; one that
+        passes 0 degrees goes from the larger angle to the smaller."""
         found = [(float(self.steps[a]), float(self.steps[b - 1])) for a, b in _stretches(self.closes)]
         if len(found) > 1 and self.driver.jack is None and self.closes[0]:
             (_, end), *others, (start, _) = found
@@ -219,8 +224,8 @@ class Exploration:
 
     @cached_property
     def type(self) -> str:
-        """Type of the four-bar linkage that the driver turns, one of :data:`~coursework.structure.grashof.TYPES`; empty
-        if it turns none."""
+        """Type of the four-bar linkage that the driver turns, one of
+        :data:`~coursework.structure.grashof.TYPES`; empty if it turns none."""
         chain = self._four_bar()
         if chain is None or not self.closes.any():
             return ""
@@ -268,7 +273,8 @@ class Exploration:
 
     @property
     def gap(self) -> float | None:
-        """Length that lacks for the mechanism to close, mm; None where it closes, or where nothing says it."""
+        """Length that lacks for the mechanism to close, mm; None where it closes, or where nothing says
+        it."""
         return self.gap_of(self._now[1])
 
     @staticmethod
@@ -279,8 +285,8 @@ class Exploration:
 
     @cached_property
     def crank(self) -> tuple[complex, complex] | None:
-        """Pivot of the driver, and the named point farthest from it that turns with it, where it is, mm; None where there is
-        no such point."""
+        """Pivot of the driver, and the named point farthest from it that turns with it, where it is, mm; None
+        where there is no such point."""
         turned, arms = np.exp(1j * np.radians(self._angles)), []
         for way in self.points.values():
             exists = np.isfinite(way)
@@ -302,7 +308,8 @@ class Exploration:
         return float(self.steps[np.where(self.closes, away, np.inf).argmin()])
 
     def values_now(self) -> Mapping[str, float]:
-        """Return the plotted quantities with the driver where it is, by linear steps of a turn; NaN where they do not exist."""
+        """Return the plotted quantities with the driver where it is, by linear steps of a turn; NaN where
+        they do not exist."""
         every = [curve for curves in self._curves.values() for curve in curves]
         place = float(np.interp(self.at, self.steps, np.arange(len(self.steps))))
         k = min(int(place), len(self.steps) - 2)
@@ -322,9 +329,10 @@ class Exploration:
         named = {getattr(element, "label", "") for element in elements}
         spots = [
             TracedPoint(run[:1], name, len(run) == len(way) and self.driver.jack is None, run)
-            for name, way in self.points.items() if name in named
+            for name, way in self.points.items()
+            if name in named
             for run in _runs(way)
-        ]  # fmt: skip
+        ]
         return drawing([elements], spots=spots, arrows=self._gap_arrows())
 
     @cached_property
@@ -340,8 +348,8 @@ class Exploration:
         return fixed | {name: p for name, p in moving.items() if np.isfinite(p)}
 
     def _pins(self) -> tuple[Element, ...]:
-        """Return what is known of a mechanism that does not close; of a four-bar linkage also the circles on which coupler
-        and output end."""
+        """Return what is known of a mechanism that does not close; of a four-bar linkage also the circles on
+        which coupler and output end."""
         if not self._known:
             return ()
         fixed = self._scene.ground_points()
@@ -356,8 +364,8 @@ class Exploration:
 
     @cached_property
     def _apart(self) -> tuple[complex, tuple[complex, float], tuple[complex, float]] | None:
-        """Pivot of the crank, and the circles on which coupler and output end, each by its centre and radius, mm; None
-        unless it is these two that do not reach each other."""
+        """Pivot of the crank, and the circles on which coupler and output end, each by its centre and radius,
+        mm; None unless it is these two that do not reach each other."""
         chain = self._four_bar()
         if chain is None or not self.is_open or chain[1] not in self._known:
             return None
@@ -382,8 +390,8 @@ class Exploration:
 def _placed(
     exercise: CourseExercise[Any], typical: Mapping[str, Any], given: Mapping[str, Any], at: float
 ) -> dict[str, Any]:
-    """Return the quantities that place the driver, in the assembly of the typical data, at an angle, degrees, or at the
-    nearest at which the mechanism closes."""
+    """Return the quantities that place the driver, in the assembly of the typical data, at an angle, degrees,
+    or at the nearest at which the mechanism closes."""
     helpers = Graph({function.__name__: function for function in exercise.spec.helpers})
     moved = helpers.descendants(tuple(exercise.posed(typical, at))) & set(helpers.quantities)
     assembly = helpers.evaluate(tuple(moved), {n: v for n, v in typical.items() if n in helpers.leaves})
@@ -401,14 +409,16 @@ def _placed(
 
 
 def _without_choices(elements: tuple[Element, ...]) -> tuple[Element, ...]:
-    """Return the elements without curves to choose from, which the question of a statement draws beside the mechanism."""
+    """Return the elements without curves to choose from, which the question of a statement draws beside the
+    mechanism."""
     if not any(isinstance(element, trace) for element in elements):
         return elements
     return tuple(element for element in elements if not isinstance(element, (trace, note)))
 
 
 def _existing(values: np.ndarray) -> np.ndarray:
-    """Return the values, NaN for those that are nowhere, such as the place of an instant centre of parallel velocities."""
+    """Return the values, NaN for those that are nowhere, such as the place of an instant centre of parallel
+    velocities."""
     return np.where(np.isfinite(values), values, np.nan)
 
 

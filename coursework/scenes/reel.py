@@ -45,7 +45,8 @@ class Reel:
         exercise = variant.exercise
         if exercise.film is None and exercise.spec.driver is None:
             raise BadCourse(
-                f"{exercise.name} names no driver=Driver(…) and its solution states no FILM, so it cannot be moved"
+                f"{exercise.name} names no driver=Driver(…) and its solution states no FILM, so it "
+                "cannot be moved"
             )
         if not exercise.is_animated:
             raise BadCourse(f"{exercise.name} has no figure to move")
@@ -153,8 +154,8 @@ class Reel:
     def _refined(
         self, nodes: dict[float, tuple[Element, ...]], start: float, turns: bool
     ) -> tuple[np.ndarray, list[tuple[Element, ...]], int, bool]:
-        """Return the cycle with further instants where something moves fast, so that it goes nearly straight from
-        each instant to the next."""
+        """Return the cycle with further instants where something moves fast, so that it goes nearly straight
+        from each instant to the next."""
         low, high = extent(list(nodes.values()))
         allowed = _BEND * max((high - low).real, (high - low).imag)
         row = [*nodes.items()]
@@ -170,9 +171,16 @@ class Reel:
         return np.array(ordered), [nodes[a] for a in ordered], ordered.index(start), turns
 
     def _between(
-        self, a: float, first: tuple[Element, ...], b: float, second: tuple[Element, ...], allowed: float, halvings: int,
-    ) -> dict[float, tuple[Element, ...]]:  # fmt: skip
-        """Return the instants to add between two; none where the middle one lies nearly on the straight lines."""
+        self,
+        a: float,
+        first: tuple[Element, ...],
+        b: float,
+        second: tuple[Element, ...],
+        allowed: float,
+        halvings: int,
+    ) -> dict[float, tuple[Element, ...]]:
+        """Return the instants to add between two; none where the middle one lies nearly on the straight
+        lines."""
         middle = (a + b) / 2
         elements = self._elements(middle)
         if elements is None or _bend(first, elements, second) <= allowed:
@@ -286,7 +294,8 @@ class Reel:
 
 
 def _bend(first: Sequence[Element], middle: Sequence[Element], second: Sequence[Element]) -> float:
-    """Return the largest distance of a link's end from the middle of where it is before and after, mm of mechanism."""
+    """Return the largest distance of a link's end from the middle of where it is before and after, mm of
+    mechanism."""
     one, two, three = (_ends(elements) for elements in (first, middle, second))
     if not len(one) == len(two) == len(three):
         return 0.0

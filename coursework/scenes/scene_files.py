@@ -46,9 +46,22 @@ from coursework.scenes.scenes import Scene
 from coursework.system.toml_files import TomlReader, source_of, table_of
 
 _KEYS = (
-    "exercise", "seed", "given", "effects", "over", "steps", "drive", "duration", "show", "gravity", "bodies", "loads",
-    "friction", "slides", "flywheel",
-)  # fmt: skip
+    "exercise",
+    "seed",
+    "given",
+    "effects",
+    "over",
+    "steps",
+    "drive",
+    "duration",
+    "show",
+    "gravity",
+    "bodies",
+    "loads",
+    "friction",
+    "slides",
+    "flywheel",
+)
 _STEPS = 360
 _BARE = re.compile(r"\s*[+-]?\d+([.,]\d*)?(e[+-]?\d+)?\s*", re.IGNORECASE)  #: a number that says no unit
 _EXAMPLES = {"drive": 'drive = { torque = "5 N*m" }', "gravity": 'gravity = { acceleration = "9.8 m/s^2" }'}
@@ -374,8 +387,14 @@ class _SceneReader(TomlReader):
 
     def _refuse_idle(self, at: Path_, values: Mapping[str, Any]) -> None:
         """Refuse a key that has no effect beside another one."""
-        for key, other in (("force", "moment"), ("table", "force"), ("table", "moment"), ("angle", "against"),
-                           ("angle", "moment"), ("body", "moment")):  # fmt: skip
+        for key, other in (
+            ("force", "moment"),
+            ("table", "force"),
+            ("table", "moment"),
+            ("angle", "against"),
+            ("angle", "moment"),
+            ("body", "moment"),
+        ):
             if key in values and other in values:
                 raise self.refused((*at, key), "a load has {key} or {other}, not both", key=key, other=other)
         if "by" in values and "table" not in values:

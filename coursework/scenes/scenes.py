@@ -1,8 +1,8 @@
 """Scenes: an exercise's mechanism, its data, and the requested effects.
 
-A scene that calls for less runs less: its columns are the quantities of the effects named, and the quantity graph
-evaluates what those need and nothing else; forces come from the mechanism that the solution states, the effort alone by
-virtual power, what joints bear only where it is asked.
+A scene that calls for less runs less: its columns are the quantities of the effects named, and the quantity
+graph evaluates what those need and nothing else; forces come from the mechanism that the solution states, the
+effort alone by virtual power, what joints bear only where it is asked.
 """
 
 from __future__ import annotations
@@ -57,8 +57,8 @@ class Scene(Showing):
     given
         Values of the exercise's given quantities, numbers in canonical units or texts with a unit.
     effects
-        ``position``, ``velocity``, ``acceleration``, ``coriolis``, ``advantage``, ``load``, ``gravity``, ``inertia``,
-        ``friction``, ``flywheel``; positions alone without any.
+        ``position``, ``velocity``, ``acceleration``, ``coriolis``, ``advantage``, ``load``, ``gravity``,
+        ``inertia``, ``friction``, ``flywheel``; positions alone without any.
     show
         What else is shown: quantities of the exercise, ``drive_torque``, ``reaction B``, ``velocity B`` …
     added
@@ -75,8 +75,8 @@ class Scene(Showing):
     # ----------------------------------------------------------------------- cycle
 
     def over_cycle(self, count: int = 360) -> SceneTable:
-        """Return the scene over one turn of the driver, or over the travel of a jack: ``count`` equal steps and the
-        end.
+        """Return the scene over one turn of the driver, or over the travel of a jack: ``count`` equal steps
+        and the end.
 
         Positions are whole multiples of the step, never accumulated.
         """
@@ -97,7 +97,8 @@ class Scene(Showing):
         return SceneTable(columns, units, self._evaluated(), tuple(self._cycle_notes(columns, angles)))
 
     def columns(self, at: np.ndarray) -> tuple[dict[str, np.ndarray], dict[str, str]]:
-        """Return what the scene shows, and its units, at positions of the driver, shape ``(n,)``: degrees, or mm of a jack."""
+        """Return what the scene shows, and its units, at positions of the driver, shape ``(n,)``: degrees, or
+        mm of a jack."""
         columns = {self.driver.moved: at, **self._exercise_columns(self._at(at), at.shape)}
         units = self._units(columns)
         angles, speed, acceleration = self.driver_motion(at, moving=bool(self.extra))
@@ -106,7 +107,8 @@ class Scene(Showing):
         return columns, units
 
     def steps(self, count: int) -> np.ndarray:
-        """Return the positions of a cycle: degrees of a turn, or lengths between the limits of the jack, mm."""
+        """Return the positions of a cycle: degrees of a turn, or lengths between the limits of the jack,
+        mm."""
         if (jack := self.driver.jack) is None:
             return np.arange(count + 1) * 360.0 / count
         for name in jack.limits:
@@ -120,7 +122,8 @@ class Scene(Showing):
         shortest, longest = (float(self._accepted[name]) for name in jack.limits)
         if not 0 < shortest < longest:
             raise WrongValue(
-                "a jack grows from {first}, its shortest, to {last}, its longest; found {shortest:.6g} mm and {longest:.6g} mm",
+                "a jack grows from {first}, its shortest, to {last}, its longest; found {shortest:.6g} "
+                "mm and {longest:.6g} mm",
                 first=jack.limits[0],
                 last=jack.limits[1],
                 shortest=shortest,
@@ -134,7 +137,8 @@ class Scene(Showing):
         name, unit = driver.moved, self._units((driver.moved,))[driver.moved]
         if (jack := driver.jack) is not None:
             yield Message(
-                "{name} goes from {shortest:.6g} mm ({first}, the jack is shortest) to {longest:.6g} mm ({last}, it is longest)",
+                "{name} goes from {shortest:.6g} mm ({first}, the jack is shortest) to {longest:.6g} "
+                "mm ({last}, it is longest)",
                 name=name,
                 shortest=at[0],
                 first=jack.limits[0],
@@ -144,7 +148,8 @@ class Scene(Showing):
         speed = (jack or driver).speed
         if not self._value(speed) and self._resists:
             yield (
-                f"at rest ({speed or 'no speed'} = 0) friction, and loads against the motion, have no way to go against: "
+                f"at rest ({speed or 'no speed'} = 0) friction, and loads against the motion, have no "
+                "way to go against: "
                 "they add nothing"
             )
         gaps = np.logical_or.reduce([np.isnan(column) for column in columns.values()])
@@ -161,12 +166,16 @@ class Scene(Showing):
             FRICTION in self.effects
             and not np.isfinite(columns.get(self._effort_name, gaps * np.nan)[left]).any()
         ):
-            yield f"the mechanism jams at {name} = {listed} {unit}{more}: its friction outgrows what overcomes it"
+            yield (
+                f"the mechanism jams at {name} = {listed} {unit}{more}: its friction outgrows what "
+                "overcomes it"
+            )
         else:
             yield f"not everything exists at {name} = {listed} {unit}{more}: a dead centre"
 
     def _open_notes(self, columns: Mapping[str, np.ndarray], at: np.ndarray, of: int) -> Iterator[str]:
-        """Say why positions do not exist at some angles: loops do not close, or a place is undefined by itself."""
+        """Say why positions do not exist at some angles: loops do not close, or a place is undefined by
+        itself."""
         names = tuple(name for name in columns if name in self.exercise.quantity_names)
         undefined: dict[str, list[str]] = {}
         for value in at[:_MOST_ASKED]:
@@ -181,7 +190,10 @@ class Scene(Showing):
             name = self.driver.moved
             yield f"{why}, at {name} = {', '.join(where[:6])} {self._units((name,))[name]}{more}"
         if left := len(at) - sum(map(len, undefined.values())):
-            yield f"the mechanism does not close at {left} of {of} {'lengths' if self.driver.jack else 'angles'}"
+            yield (
+                f"the mechanism does not close at {left} of {of} "
+                f"{'lengths' if self.driver.jack else 'angles'}"
+            )
 
     def _empty_effects(self) -> Iterator[str]:
         """Yield the requested effects for which the scene has no data."""
@@ -224,7 +236,8 @@ class Scene(Showing):
         yield f"excess energy: {self.evenness.excess_energy:.4g} J"
         yield (
             f"flywheel: {self.flywheel:.4g} kg*m^2 keeps an unevenness of "
-            f"{self.evenness.unevenness_of(self.flywheel):.3g} at {abs(self._speed):.6g} rad/s, beside the inertia of the "
+            f"{self.evenness.unevenness_of(self.flywheel):.3g} at {abs(self._speed):.6g} rad/s, beside "
+            "the inertia of the "
             "other bodies as the effects say"
         )
 
@@ -261,19 +274,21 @@ class Scene(Showing):
         """Return the motion from the given position and speed under its drive, a :class:`Motor` or a constant
         torque in N m.
 
-        One degree of freedom: every position is computed from the driver's angle by the closed form, so that nothing
-        drifts apart. Dead centres of the driver's ``output`` are rows of the table, marked in ``dead_centre``. With
-        friction, or a load against the motion, the mechanism may come to rest and stay, or leave again.
+        One degree of freedom: every position is computed from the driver's angle by the closed form, so that
+        nothing drifts apart. Dead centres of the driver's ``output`` are rows of the table, marked in
+        ``dead_centre``. With friction, or a load against the motion, the mechanism may come to rest and stay,
+        or leave again.
 
-        ``balance`` compares the kinetic energy with the work done, relative to the energy exchanged: the two come from
-        different terms of the effort.
+        ``balance`` compares the kinetic energy with the work done, relative to the energy exchanged: the two
+        come from different terms of the effort.
 
         Raises
         ------
         WrongValue
             The scene calls for no inertia, or a duration that is not positive.
         Undefined
-            The motion reaches a place where the mechanism does not close or jams, or takes more steps than are allowed.
+            The motion reaches a place where the mechanism does not close or jams, or takes more steps than
+            are allowed.
         """
         if not duration > 0 or not math.isfinite(duration):
             raise WrongValue(
@@ -299,10 +314,12 @@ class Scene(Showing):
 
     def _motion_table(self, motion: Trajectory, running: Running, motor: Motor, t: np.ndarray) -> SceneTable:
         (angle, speed, work), ways = motion.at(t)
-        acceleration = np.array([
-            running.acceleration(float(q), float(w), int(direction)) if direction else 0.0
-            for q, w, direction in zip(angle, speed, ways, strict=True)
-        ])  # fmt: skip
+        acceleration = np.array(
+            [
+                running.acceleration(float(q), float(w), int(direction)) if direction else 0.0
+                for q, w, direction in zip(angle, speed, ways, strict=True)
+            ]
+        )
         driver = self.driver
         moved = {driver.angle: np.degrees(angle), driver.speed or "speed": speed}
         moved[driver.acceleration or "acceleration"] = acceleration

@@ -121,7 +121,8 @@ class Showing(Staged):
     def _coriolis_points(self) -> tuple[str, ...]:
         if self.exercise.solution.mechanism is None:
             raise WrongValue(
-                "{exercise} has no Coriolis term to show: its solution states no MECHANISM, and no EFFECTS of coriolis",
+                "{exercise} has no Coriolis term to show: its solution states no MECHANISM, and no "
+                "EFFECTS of coriolis",
                 exercise=self.exercise.name,
             )
         points = tuple(s.name.removesuffix(" slide") for s in shown.turning_slides(self.linkage))
@@ -140,7 +141,8 @@ class Showing(Staged):
         if name in self.exercise.quantity_names:
             if self.has_own_data and name in self._of_own_forces:
                 raise WrongValue(
-                    "{name} follows from the exercise's own data, and the scene brings others: show drive_torque, 'reaction B'",
+                    "{name} follows from the exercise's own data, and the scene brings others: show "
+                    "drive_torque, 'reaction B'",
                     name=name,
                 )
             return

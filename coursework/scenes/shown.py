@@ -1,7 +1,7 @@
 """Quantities that a scene can show beside the exercise's own: motions of points, joint reactions, the drive.
 
-``drive_torque``, or ``drive_thrust`` of a jack, ``drive_power``, ``kinetic_energy``; ``position B``, ``velocity B``,
-``acceleration B``, ``coriolis A``; ``reaction B``, of a pin or a slide.
+``drive_torque``, or ``drive_thrust`` of a jack, ``drive_power``, ``kinetic_energy``; ``position B``,
+``velocity B``, ``acceleration B``, ``coriolis A``; ``reaction B``, of a pin or a slide.
 """
 
 from __future__ import annotations

@@ -186,7 +186,8 @@ class Staged:
         stated = self.exercise.solution.mechanism
         if stated is None:
             raise BadCourse(
-                f"{self.exercise.solution.source} states no MECHANISM = Mechanism(…): nothing says which bodies bear forces"
+                f"{self.exercise.solution.source} states no MECHANISM = Mechanism(…): nothing says "
+                "which bodies bear forces"
             )
         return self.added.to(stated)
 
@@ -199,7 +200,8 @@ class Staged:
             if name not in self.exercise.quantity_names:
                 known_values = {*self.exercise.quantity_names, *self.exercise.spec.given}
                 raise BadCourse(
-                    f"{self.exercise.solution.source}: MECHANISM names no quantity by {name!r}{nearest(name, known_values)}"
+                    f"{self.exercise.solution.source}: MECHANISM names no quantity by "
+                    f"{name!r}{nearest(name, known_values)}"
                 )
         values = self.exercise.solve(**self.given, only=wanted, effects=()) if wanted else {}
         values |= {n: self._accepted[n] for n in mechanism.named if n in self._accepted}
@@ -214,8 +216,10 @@ class Staged:
             for name in parameters(position):
                 if name in self.moved:
                     raise BadCourse(
-                        f"{self.exercise.solution.source}: MECHANISM places a point by {name}, which moves with "
-                        f"{self.driver.angle}: a place does not move within its body; where a body slides, state a Slide"
+                        f"{self.exercise.solution.source}: MECHANISM places a point by {name}, which "
+                        "moves with "
+                        f"{self.driver.angle}: a place does not move within its body; where a body "
+                        "slides, state a Slide"
                     )
 
     def pose(self, angles: np.ndarray, *, by_joints: bool = False) -> Stance:
@@ -303,14 +307,16 @@ class Staged:
         for position in (load.force, load.moment, load.angle):
             if callable(position) and self.moved.intersection(parameters(position)):
                 raise WrongValue(
-                    "the load on {place} goes by a function of {parameters}, which the driver moves; make it a quantity of the solution, and name that",
+                    "the load on {place} goes by a function of {parameters}, which the driver moves; "
+                    "make it a quantity of the solution, and name that",
                     place=load.on,
                     parameters=", ".join(parameters(position)),
                 )
         for name in (load.by, *(n for p in (load.force, load.moment, load.angle) for n in parameters(p))):
             if name in self._sped:
                 raise WrongValue(
-                    "the load on {place} goes by {name}, which changes with the driver's speed; a load goes by an angle, a position, or against the motion",
+                    "the load on {place} goes by {name}, which changes with the driver's speed; a load "
+                    "goes by an angle, a position, or against the motion",
                     place=load.on,
                     name=name,
                 )

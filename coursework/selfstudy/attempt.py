@@ -140,7 +140,8 @@ class StudyAttempt:
 
     @property
     def open_parts(self) -> dict[str, int]:
-        """Numbers of the questions that are neither answered nor given up, by part; of questions that are judged."""
+        """Numbers of the questions that are neither answered nor given up, by part; of questions that are
+        judged."""
         if self.is_example:
             return {}
         right = self.marked().right

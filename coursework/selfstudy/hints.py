@@ -1,8 +1,8 @@
 """Hints in steps: the quantities that an answer depends on, the words of the course, the formula, the formula
 with numbers.
 
-All of it is read from the solution's graph and texts. No step holds the value: numbers stand for what the statement
-gives and for what the student has found; the rest stays a symbol, to be found first.
+All of it is read from the solution's graph and texts. No step holds the value: numbers stand for what the
+statement gives and for what the student has found; the rest stays a symbol, to be found first.
 """
 
 from __future__ import annotations
@@ -63,8 +63,8 @@ def steps(
 ) -> tuple[str, ...]:
     """Return the hints for a part or an intermediate step, the vaguest first, as Markdown.
 
-    ``results`` holds the quantities that the student has right, as the student has them; ``call`` says how to ask
-    for the hints of another.
+    ``results`` holds the quantities that the student has right, as the student has them; ``call`` says how to
+    ask for the hints of another.
     """
     quantity = quantity_of(variant, name)
     requested = _asking_part(variant, quantity)
@@ -130,8 +130,8 @@ def words_of(variant: Variant, quantity: str) -> str:
     text = section.text if is_free else start
     if not text:
         return ""
-    # The words before a case break off where the answer follows: "Here the guide". A whole reason tells the answer
-    # in its last sentence.
+    # The words before a case break off where the answer follows: "Here the guide". A whole reason tells the
+    # answer in its last sentence.
     if not is_whole(text):
         return _UNFINISHED.sub("", text).strip() or f"{text} …"
     return _LAST_SENTENCE.sub("", text).strip() if is_free else text

@@ -39,9 +39,9 @@ def compare(
 ) -> PredictionTable:
     """Return the predictions with their outcomes, for display in a notebook cell.
 
-    Numbers agree within a tenth, angles within 10°, whole turns apart or not; texts and truths when they are the
-    same. Numbers may be texts with a comma and a unit, truths yes and no in any language. A prediction that is None
-    or blank is shown as not made, and one under a name that nothing has come out of is told.
+    Numbers agree within a tenth, angles within 10°, whole turns apart or not; texts and truths when they are
+    the same. Numbers may be texts with a comma and a unit, truths yes and no in any language. A prediction
+    that is None or blank is shown as not made, and one under a name that nothing has come out of is told.
 
     Parameters
     ----------
@@ -64,7 +64,8 @@ def compare(
         mark = "·" if is_blank(guess) else "✓" if agrees else "✗"
         line = texts["not_predicted"] if is_blank(guess) else texts["predicted"]
         lines.append(
-            f"- {mark} {line.format(name=name, said=_outcome_text(guess, lang), found=_outcome_text(value, lang))}"
+            f"- {mark} "
+            f"{line.format(name=name, said=_outcome_text(guess, lang), found=_outcome_text(value, lang))}"
         )
     for name, guess in predicted.items():
         if name not in results and not is_blank(guess):
@@ -121,8 +122,8 @@ def plot(
     at
         A place on the variable that is marked.
     caption
-        A sentence on what is plotted, with its units, in the Markdown of statements: it stands below the plot, and tells it to who
-        cannot see it.
+        A sentence on what is plotted, with its units, in the Markdown of statements: it stands below the
+        plot, and tells it to who cannot see it.
 
     Raises
     ------
@@ -164,8 +165,8 @@ def usual_parts(variant: Variant, parts: Sequence[Part]) -> tuple[Part, ...]:
 def curves(
     variant: Variant, parts: Sequence[Part], answers: Mapping[str, Any], own_answers: Mapping[str, OwnAnswer]
 ) -> Curves:
-    """Plot the parts over a turn of the driver; ``answers`` by part, ``own_answers`` the student's right answers by
-    quantity."""
+    """Plot the parts over a turn of the driver; ``answers`` by part, ``own_answers`` the student's right
+    answers by quantity."""
     exercise, lang = variant.exercise, variant.lang
     assert exercise.spec.driver is not None  # without one no part moves
     driver = exercise.spec.driver.angle

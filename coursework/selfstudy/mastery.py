@@ -43,7 +43,8 @@ AFTER_DAYS = (1, 3, 7, 16)  #: when what was missed comes again
 HELD = 2  #: variants in which a skill is shown since it was last lost
 
 RIGHT = ("correct",)
-#: Verdicts that say nothing of who answers: what cannot be read, and what follows rightly from an earlier wrong answer.
+#: Verdicts that say nothing of who answers: what cannot be read, and what follows rightly from an earlier
+#: wrong answer.
 _NO_ATTEMPT = ("missing", "unreadable", "missing_unit", "wrong_unit", "to_mark", "follow_through")
 
 
@@ -281,7 +282,8 @@ def marked_answers(
 
 
 def mark_what_came_unmarked(course: Course[Any], file: ProgressStore) -> None:
-    """Mark the stored answers without a verdict, with the date of the answer: a fault of the course left them so."""
+    """Mark the stored answers without a verdict, with the date of the answer: a fault of the course left them
+    so."""
     last = {(e["exercise"], e["seed"], e["part"]): e for e in file.progress if e["what"] == ANSWER}
     unmarked: dict[tuple[str, int], list[Entry]] = {}
     for (exercise, seed, _), item in last.items():

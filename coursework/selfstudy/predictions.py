@@ -49,7 +49,8 @@ _UNBOUNDED = 30.0  #: times the median size over a turn
 class Prediction:
     """Prediction about a quantity, made before computing.
 
-    ``kind`` is ``sign``, ``quadrant``, ``compare`` (with the given quantity ``other``), ``guess`` (a case), or over the cycle ``zeros`` (how often it changes its sign) or ``highest`` (at which angle of the driver).
+    ``kind`` is ``sign``, ``quadrant``, ``compare`` (with the given quantity ``other``), ``guess`` (a case),
+    or over the cycle ``zeros`` (how often it changes its sign) or ``highest`` (at which angle of the driver).
     """
 
     id: str
@@ -281,7 +282,8 @@ def compared(
 ) -> PredictionOutcome | None:
     """Return a prediction with its outcome; None where nothing was predicted.
 
-    ``own_answer`` is the student's own right value, where it is not the reference's: the prediction was of that.
+    ``own_answer`` is the student's own right value, where it is not the reference's: the prediction was of
+    that.
 
     Raises
     ------

@@ -4,12 +4,13 @@ One JSON object::
 
     {"format": "coursework progress", "version": 1, "entries": [ENTRY, …]}
 
-An entry is something that happened once and is never changed: ``at`` (UTC, ISO 8601), ``exercise``, ``seed``, ``part``
-(a part's id, or another quantity of the solution; empty where it is of the whole variant), and ``what``:
+An entry is something that happened once and is never changed: ``at`` (UTC, ISO 8601), ``exercise``, ``seed``,
+``part`` (a part's id, or another quantity of the solution; empty where it is of the whole variant), and
+``what``:
 
 ``answer``
-    with ``answer`` (as it was written) and, where it was marked, ``verdict`` (as in ``marks.csv``), ``kind`` (the skill of its
-    kind), ``shown`` (the named errors that it shows were not made)
+    with ``answer`` (as it was written) and, where it was marked, ``verdict`` (as in ``marks.csv``), ``kind``
+    (the skill of its kind), ``shown`` (the named errors that it shows were not made)
 ``prediction``
     with ``answer``
 ``hint``
@@ -19,8 +20,9 @@ An entry is something that happened once and is never changed: ``at`` (UTC, ISO 
 ``example``
     the variant was shown as a worked example, ``step`` being its level; it counts for nothing any more
 
-What a reader does not know it keeps. Two files are one when the entries of both stand in it once each: nothing is lost, whoever
-wrote last. :class:`Progress` reads and writes such texts, :class:`ProgressFile` keeps them in a file, and a site may keep them elsewhere.
+What a reader does not know it keeps. Two files are one when the entries of both stand in it once each:
+nothing is lost, whoever wrote last. :class:`Progress` reads and writes such texts, :class:`ProgressFile`
+keeps them in a file, and a site may keep them elsewhere.
 """
 
 from __future__ import annotations
@@ -142,7 +144,8 @@ def date_of(item: Entry) -> datetime:
 
 
 def _checked(item: Any) -> Entry:
-    """Return an entry if it is valid. Raises ValueError, TypeError, KeyError: it lacks what every entry has."""
+    """Return an entry if it is valid. Raises ValueError, TypeError, KeyError: it lacks what every entry
+    has."""
     if date_of(item).tzinfo is None:
         raise ValueError(item["at"])
     for number in (item["seed"], item.get("step", 1)):
@@ -190,8 +193,8 @@ class ProgressFile:
     """Progress file of a folder, read when opened and again before each write, so that two open notebooks
     lose nothing.
 
-    ``trouble`` says why nothing is written, or why a file was set aside; it is empty when all is well, and ``troubled`` is the
-    name of that file.
+    ``trouble`` says why nothing is written, or why a file was set aside; it is empty when all is well, and
+    ``troubled`` is the name of that file.
     """
 
     def __init__(self, folder: Path, clock: Clock = now):

@@ -71,7 +71,8 @@ if TYPE_CHECKING:
 
 
 def study_sheet(variant: Variant, student: str = "", neighbours: Collection[str] = ()) -> StudySheet:
-    """Return the self-study notebook of a variant, before it is printed, with links to the lessons in ``neighbours``, the folder of the notebook."""
+    """Return the self-study notebook of a variant, before it is printed, with links to the lessons in
+    ``neighbours``, the folder of the notebook."""
     exercise = variant.exercise
     is_other_course = not exercise.folder.is_builtin
     return StudySheet(
@@ -236,7 +237,8 @@ class StudySession:
         """Return the mechanism over its cycle; ``effects`` as in
         :class:`~coursework.scenes.animation.Animation`.
 
-        Unless told, paths and velocities, where the solution states them; the figure alone while questions are left.
+        Unless told, paths and velocities, where the solution states them; the figure alone while questions
+        are left.
 
         Raises
         ------
@@ -402,7 +404,8 @@ class StudySession:
         """Mark answers, by the name or number of the question, and give feedback; stored answers fill in for
         blank ones.
 
-        An entry ``student`` is no answer. The value of an answer is never told. ``check(rA="238")`` does as well.
+        An entry ``student`` is no answer. The value of an answer is never told. ``check(rA="238")`` does as
+        well.
 
         Raises
         ------
@@ -517,8 +520,9 @@ class StudySession:
         """Plot the quantities over a turn of the driver, with the student's answers marked; then compare the
         predictions about them.
 
-        A curve tells the answer at the position of the statement: it is drawn once the question is answered right, or its solution was
-        shown. Without names, the first of those asked; any that moves may be named.
+        A curve tells the answer at the position of the statement: it is drawn once the question is answered
+        right, or its solution was shown. Without names, the first of those asked; any that moves may be
+        named.
 
         Raises
         ------

@@ -19,7 +19,8 @@ _UNITS = ("deg", "mm", "rad/s", "rad/s^2", "mm/s", "mm/s^2", "N", "N*m", "mm^2",
 
 
 def unwrapped(value: Any) -> Any:
-    """Return a value as plain Python: numpy numbers as numbers, arrays as lists, anything else as its text."""
+    """Return a value as plain Python: numpy numbers as numbers, arrays as lists, anything else as its
+    text."""
     if hasattr(value, "tolist"):
         value = value.tolist()
     if isinstance(value, (list, tuple)):

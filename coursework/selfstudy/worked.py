@@ -1,4 +1,5 @@
-"""Worked solutions of other variants: complete, with blanks, bare; and the questions that another variant asks the same."""
+"""Worked solutions of other variants: complete, with blanks, bare; and the questions that another variant
+asks the same."""
 
 from __future__ import annotations
 
@@ -142,7 +143,8 @@ def _may_be_blank(variant: Variant, part: Part) -> bool:
 
 
 def _together(parts: Iterable[Part], places: Mapping[str, int]) -> list[list[Part]]:
-    """Group the parts that are judged together, in the order of the solution, at the position of the first."""
+    """Group the parts that are judged together, in the order of the solution, at the position of the
+    first."""
     groups: dict[tuple[str, str], list[Part]] = {}
     for part in sorted(parts, key=lambda p: places[p.quantity]):
         judge = part.judge or part.loop
@@ -298,7 +300,8 @@ class WorkedExample(NotebookDisplay):
         return NotebookDisplay(self.lang, "\n".join(lines))
 
     def marks(self, answers: Mapping[str, Any]) -> Mapping[str, BlankMark]:
-        """Return the marks of answers to the blanks, by the names of their answers; those of blank ones are left out.
+        """Return the marks of answers to the blanks, by the names of their answers; those of blank ones are
+        left out.
 
         Raises
         ------

@@ -1,7 +1,8 @@
 """Answer pages: paper of a fixed layout that is filled in by hand and read back by a scanner.
 
-The layout is a function of what the records ask, and of the paper: it is the same whatever the answers, the student and
-the language, so that nothing of it is stored. Lengths are mm from the upper left corner of the paper, y downwards.
+The layout is a function of what the records ask, and of the paper: it is the same whatever the answers, the
+student and the language, so that nothing of it is stored. Lengths are mm from the upper left corner of the
+paper, y downwards.
 """
 
 from __future__ import annotations
@@ -36,7 +37,8 @@ _QR = 20.0
 _CORNER = FRAME + MARK + 3.5  #: from the edge, free of marks and of their rim
 _CODE_CHARACTERS = 13  #: 65 bits
 
-#: Of a row, from the left of the page's content: what stands before the boxes, and where each group of them begins.
+#: Of a row, from the left of the page's content: what stands before the boxes, and where each group of them
+#: begins.
 _NUMBER, _SYMBOL, _BOXES = 0.0, 10.0, 29.5
 _DIGITS = _BOXES + CELL[0] + 1.0
 _DECIMALS = _DIGITS + WHOLE_DIGITS * CELL[0] + 3.0
@@ -152,10 +154,11 @@ class AnswerPage:
 def paper_code(
     assignment: str, student: str, sitting: int, records: Sequence[Mapping[str, Any]], paper: str = "a4"
 ) -> str:
-    """Return the code of a paper, of 13 letters and digits: the same from ``issued.json`` as when it was built.
+    """Return the code of a paper, of 13 letters and digits: the same from ``issued.json`` as when it was
+    built.
 
-    ``assignment`` is its name, empty where exercises are handed out by themselves; ``records`` are the paper's. The code
-    tells nothing of who and what, and is another on another size of paper.
+    ``assignment`` is its name, empty where exercises are handed out by themselves; ``records`` are the
+    paper's. The code tells nothing of who and what, and is another on another size of paper.
     """
     content = json.dumps([assignment, student, sitting, paper, *records], sort_keys=True, ensure_ascii=True)
     digest = hashlib.sha256(f"coursework/paper/{content}".encode()).digest()
@@ -172,7 +175,8 @@ def answer_pages(
 ) -> tuple[AnswerPage, ...]:
     """Return the answer pages of one paper, whose exercises are these variants in order.
 
-    ``lang`` is that of the units that are printed; it moves nothing. ``code`` is the paper's: :func:`paper_code`.
+    ``lang`` is that of the units that are printed; it moves nothing. ``code`` is the paper's:
+    :func:`paper_code`.
 
     Raises
     ------
@@ -219,9 +223,17 @@ def _blocks(variant: Answerable, index: int, lang: str, width: float, *, alone: 
 def _block(variant: Answerable, index: int, part: Part, number: str, lang: str, width: float) -> _Block:
     symbol = variant.exercise.symbol(part.quantity) if part.sort.has_symbol else ""
     blank = AnswerField(
-        index, variant.exercise.name, variant.seed, part.id, 0, 1, part.sort.field, Box(0, 0, 0, 0),
-        number=number, symbol=symbol,
-    )  # fmt: skip
+        index,
+        variant.exercise.name,
+        variant.seed,
+        part.id,
+        0,
+        1,
+        part.sort.field,
+        Box(0, 0, 0, 0),
+        number=number,
+        symbol=symbol,
+    )
     if part.sort.field == "ticks":
         return _ticks(blank, part.sort.ticks(part, variant), width, several=part.sort.has_several_ticks)
     if part.sort.field == "written":
@@ -275,7 +287,8 @@ def _row_of_boxes(blank: AnswerField, width: float, has_decimals: bool) -> Answe
 
 
 def _row_box(width: float, height: float) -> Box:
-    """Return a row as wide as the page's content, a little less high than its room: neighbours do not touch."""
+    """Return a row as wide as the page's content, a little less high than its room: neighbours do not
+    touch."""
     return Box(LEFT, 0.25, width - 2 * LEFT, height - 0.5)
 
 
@@ -388,8 +401,10 @@ class _PageLayout:
         left = self.height - FRAME - _TOP_BARE - above
         if height > left:
             raise BadCourse(
-                f"{row.exercise}: {row.part or 'its paper to draw on'} is {row.whole.height:.0f} mm high, and an answer page of "
-                f"{self.width:g} mm by {self.height:g} mm leaves {left - height + row.whole.height:.0f} mm; make its room smaller"
+                f"{row.exercise}: {row.part or 'its paper to draw on'} is {row.whole.height:.0f} mm "
+                "high, and an answer page of "
+                f"{self.width:g} mm by {self.height:g} mm leaves "
+                f"{left - height + row.whole.height:.0f} mm; make its room smaller"
             )
         self._open(bare=True)
         self._put_head()
@@ -422,9 +437,15 @@ class _PageLayout:
             code_text(code, number, count),
             wide,
             high,
-            marks=tuple((x, y) for x, y in (
-                (middle, middle), (wide - middle, middle), (wide - middle, high - middle), (middle, high - middle)
-            )),
+            marks=tuple(
+                (x, y)
+                for x, y in (
+                    (middle, middle),
+                    (wide - middle, middle),
+                    (wide - middle, high - middle),
+                    (middle, high - middle),
+                )
+            ),
             code=Box(right, FRAME, _QR, _QR),
             fields=tuple(page.fields),
             title=Box(_CORNER, FRAME, right - _CORNER - 4.0, 8.0),
@@ -433,7 +454,7 @@ class _PageLayout:
             guide=() if page.is_bare else tuple(guide),
             heads=tuple(page.heads),
             captions=None if page.captions is None else Box(LEFT, page.captions, wide - 2 * LEFT, _CAPTIONS),
-        )  # fmt: skip
+        )
 
 
 def _lowered(row: AnswerField, by: float) -> AnswerField:

@@ -60,7 +60,8 @@ def answer_sheet(variant: Variant, student: str = "", *, polygons: bool = True) 
 
 
 def _needed_polygons(variant: Variant) -> tuple[Construction, ...]:
-    """Return the polygons of velocities where the asked answers need some, and of accelerations where they need those."""
+    """Return the polygons of velocities where the asked answers need some, and of accelerations where they
+    need those."""
     units = (variant.exercise.units.get(name, "1") for name in variant.walk if name not in variant.given)
     needed = max(map(_derivations, units), default=0)
     return tuple(p for p in stated_polygons(variant) if _derivations(p.polygon.unit) <= needed)
@@ -132,7 +133,8 @@ def _step(
         substitution = formula_latex(function, numbers) if formula and value else ""
     except KeyError as fault:
         raise BadCourse(
-            f"{exercise.solution.source}: the formula of {name} names {fault}, which is not among its quantities"
+            f"{exercise.solution.source}: the formula of {name} names {fault}, which is not among its "
+            "quantities"
         ) from fault
     symbol = variant.exercise.solution_symbol(name)
     return Step(
@@ -239,7 +241,8 @@ def _symbols(variant: Variant) -> dict[str, str]:
 
 
 def answer_text(variant: Variant, part: Part, values: Mapping[str, Any]) -> str:
-    """Return the reference answer of a part, rounded for print, as Markdown; of one that a person marks, that it is so."""
+    """Return the reference answer of a part, rounded for print, as Markdown; of one that a person marks, that
+    it is so."""
     if part.sort.is_open:
         return engine_words(variant.lang)["solution"]["by_hand"]
     value = values[part.quantity]

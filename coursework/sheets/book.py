@@ -1,7 +1,8 @@
 """Content of a workbook: chapters, in each lessons and exercises.
 
 As in :mod:`coursework.sheets.sheet`, texts are Markdown with ``$LaTeX$``. Links lead to ``exercise:NAME`` and
-``lesson:NAME#SECTION``, and terms of the index to ``#index``: each back end puts its own places in their stead.
+``lesson:NAME#SECTION``, and terms of the index to ``#index``: each back end puts its own places in their
+stead.
 """
 
 from __future__ import annotations
@@ -28,7 +29,8 @@ class ProsePiece:
 
 @dataclass(frozen=True)
 class HeadPiece:
-    """A heading inside a lesson: ``level`` 1 for a section, 2 for a part of one; ``number`` of a numbered section, else 0."""
+    """A heading inside a lesson: ``level`` 1 for a section, 2 for a part of one; ``number`` of a numbered
+    section, else 0."""
 
     text: str  #: Markdown of a line, without its number
     level: int
@@ -81,7 +83,8 @@ class TablePiece:
 
 @dataclass(frozen=True)
 class BoxPiece:
-    """Definition or rule that stands in a box: its ``sort``, its number, its title, and its text (Markdown)."""
+    """Definition or rule that stands in a box: its ``sort``, its number, its title, and its text
+    (Markdown)."""
 
     sort: str  #: definition or rule
     number: str
@@ -117,9 +120,9 @@ class LaterPiece:
 class BlanksPiece:
     """Blanks of the worked example above it, for a page that marks what is typed in them; no paper shows it.
 
-    ``exercise``, ``seed``, ``level`` and ``parts`` are those of the example; ``questions`` are the blanks, each with its
-    number there and the name of its answer; ``posed`` and ``told`` are the counts of the pieces above it that pose the
-    example, and of those that tell a part of its solution.
+    ``exercise``, ``seed``, ``level`` and ``parts`` are those of the example; ``questions`` are the blanks,
+    each with its number there and the name of its answer; ``posed`` and ``told`` are the counts of the pieces
+    above it that pose the example, and of those that tell a part of its solution.
     """
 
     exercise: str
@@ -163,7 +166,8 @@ class LessonText:
 
 @dataclass(frozen=True)
 class Drill:
-    """Question of two minutes: its number, its grade from 1 on, where it was drawn, its text and its answer (Markdown)."""
+    """Question of two minutes: its number, its grade from 1 on, where it was drawn, its text and its answer
+    (Markdown)."""
 
     number: str
     grade: int
@@ -194,7 +198,8 @@ class Judgement:
 
 @dataclass(frozen=True)
 class SummaryCard:
-    """Summary of a lesson: its formulas, each a number and lines of LaTeX; conditions, sign rules and traps, Markdown."""
+    """Summary of a lesson: its formulas, each a number and lines of LaTeX; conditions, sign rules and traps,
+    Markdown."""
 
     lesson: LessonText
     formulas: tuple[tuple[str, tuple[str, ...]], ...]
@@ -352,8 +357,8 @@ class Book:
     def symbols(self) -> tuple[SymbolRow, ...]:
         """The symbols that questions define, with their meanings, in alphabetical order.
 
-        A question defines its symbol where its first clause has it; in the meaning it is left out. Lengths between
-        points and other expressions are none.
+        A question defines its symbol where its first clause has it; in the meaning it is left out. Lengths
+        between points and other expressions are none.
         """
         articles = words(self.lang)["book"]["articles"]
         symbols: dict[tuple[str, str, str], list[BookExercise]] = {}

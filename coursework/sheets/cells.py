@@ -1,4 +1,5 @@
-"""Boxes for the components of an answer: they make the one text that a marker reads, and such a text fills them.
+"""Boxes for the components of an answer: they make the one text that a marker reads, and such a text fills
+them.
 
 A form of text has ``{}`` for each component; ``templates/parts/cells.js`` does the same with it in a page.
 """
@@ -24,7 +25,8 @@ _PIECE = re.compile(r"[^\s,;|&()\[\]{}]+")
 def cells_of(variant: Variant, part: Part) -> tuple[tuple[ComponentBox, ...], ...]:
     """Return the boxes for the components of a part, in groups, their units as the language prints them.
 
-    There are none for an answer of one component, and where the course has no solution that says how many there are.
+    There are none for an answer of one component, and where the course has no solution that says how many
+    there are.
     """
     if not part.sort.has_cells:
         return ()
@@ -43,7 +45,8 @@ def cells_of(variant: Variant, part: Part) -> tuple[tuple[ComponentBox, ...], ..
 
 
 def form_of(variant: Variant, part: Part) -> str:
-    """Return the form of text of a part, with ``{}`` for each component; empty for a part without such boxes."""
+    """Return the form of text of a part, with ``{}`` for each component; empty for a part without such
+    boxes."""
     count = sum(map(len, cells_of(variant, part)))
     return part.sort.joined(["{}"] * count, part, variant) if count else ""
 
@@ -78,7 +81,8 @@ def answer_in(texts: Mapping[str, Sequence[str]], name: str, form: str) -> str:
 
 
 def in_cells(text: str, form: str) -> tuple[str, ...]:
-    """Return the components of a text that :func:`answer_in` made; none of a text that is written otherwise."""
+    """Return the components of a text that :func:`answer_in` made; none of a text that is written
+    otherwise."""
     match = _pattern(form).fullmatch(text) if form else None
     return tuple(cell.strip() for cell in match.groups()) if match else ()
 

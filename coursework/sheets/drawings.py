@@ -25,8 +25,8 @@ def solution_figure(variant: Variant) -> Figure | None:
 
 
 def stated_overlay(variant: Variant, answers: Mapping[str, Any]) -> OwnDrawing | None:
-    """Return what the solution lays over its own construction: the drawing of these answers, by part as a judge has them;
-    None where there is nothing to show."""
+    """Return what the solution lays over its own construction: the drawing of these answers, by part as a
+    judge has them; None where there is nothing to show."""
     overlay = variant.exercise.solution.overlay
     if overlay is None:
         return None
@@ -35,7 +35,8 @@ def stated_overlay(variant: Variant, answers: Mapping[str, Any]) -> OwnDrawing |
 
 
 def _quantities(variant: Variant, function: Any, **more: Any) -> dict[str, Any]:
-    """Return the quantities of a variant's solution, and those besides that a function of the solution needs."""
+    """Return the quantities of a variant's solution, and those besides that a function of the solution
+    needs."""
     values = dict(variant.walk) | more
     others = tuple(n for n in graph_of(function).node(function.__name__).arguments if n not in values)
     return {**values, **variant.quantities(others)}

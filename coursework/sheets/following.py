@@ -56,8 +56,9 @@ def follows_from(variant: Variant, quantity: str) -> str:
     """Return the quantities from which a quantity follows, as Markdown: given ones by symbol, those asked
     before by question.
 
-    What is given as a case, such as an assembly mode, has no symbol and is left out. Nothing where it takes none of these,
-    so many that a list of them says nothing, or numbers that stand elsewhere than among the data.
+    What is given as a case, such as an assembly mode, has no symbol and is left out. Nothing where it takes
+    none of these, so many that a list of them says nothing, or numbers that stand elsewhere than among the
+    data.
     """
     places = {part.quantity: number for number, part in enumerate(variant.parts, start=1)}
     numbers = {name: number for name, number in places.items() if number < places.get(quantity, math.inf)}

@@ -1,4 +1,5 @@
-"""Drawn points as the answers print them: a pole may stand anywhere, and the printed one stands where its drawing is in the box."""
+"""Drawn points as the answers print them: a pole may stand anywhere, and the printed one stands where its
+drawing is in the box."""
 
 from __future__ import annotations
 
@@ -17,10 +18,12 @@ _POINT = "point"
 
 @lru_cache(maxsize=16)  # a variant is rendered in every format before the next
 def placed_points(variant: Variant) -> dict[str, np.ndarray]:
-    """Return by quantity the points of drawings whose pole is free, mm from the lower left corner of the printed box.
+    """Return by quantity the points of drawings whose pole is free, mm from the lower left corner of the
+    printed box.
 
-    Each drawing, a pole at (0, 0) and the points that are asked after it, is moved to the middle of its share of the box, by
-    whole millimetres. The judge of the parts says whether that is as right: else nothing is moved.
+    Each drawing, a pole at (0, 0) and the points that are asked after it, is moved to the middle of its share
+    of the box, by whole millimetres. The judge of the parts says whether that is as right: else nothing is
+    moved.
     """
     box = variant.exercise.spec.drawing_mm
     points: dict[str, np.ndarray] = {}

@@ -104,7 +104,8 @@ class Remark:
     """A known mistake that lurks at a step."""
 
     words: str  #: Markdown
-    wrong: str = ""  #: what it gives in place of the right value, as Markdown; empty where that is no number and no case
+    #: What it gives in place of the right value, as Markdown; empty where that is no number and no case.
+    wrong: str = ""
 
 
 @dataclass(frozen=True)
@@ -190,7 +191,8 @@ class FeedbackSheet:
 
 @dataclass(frozen=True)
 class Ask:
-    """A prediction to make: what it is written under, the question (Markdown), and what may be written (plain text)."""
+    """A prediction to make: what it is written under, the question (Markdown), and what may be written (plain
+    text)."""
 
     id: str
     question: str

@@ -10,8 +10,8 @@ from coursework.model import Part
 
 
 def units_text(part: Part, lang: str, asking: Asking) -> str:
-    """Return the unit of a part as it is printed; the units of its columns, parted by a bar, each with its column's letter,
-    in the order of the question, or that of the kind in a course without solutions.
+    """Return the unit of a part as it is printed; the units of its columns, parted by a bar, each with its
+    column's letter, in the order of the question, or that of the kind in a course without solutions.
     """
     units = [unit_text(unit, lang) for unit in part.sort.units(part.unit)]
     if len(units) == 1:

@@ -75,7 +75,8 @@ ROUTES: tuple[Route, ...] = (
 )
 
 
-#: A CSRF token is masked anew on each page, so that its compressed length reveals nothing. PDF is compressed already.
+#: A CSRF token is masked anew on each page, so that its compressed length reveals nothing. PDF is compressed
+#: already.
 _COMPRESSION = StarletteMiddleware(
     GZipMiddleware,
     minimum_size=1000,

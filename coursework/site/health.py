@@ -22,7 +22,8 @@ _BEHIND = 300  #: seconds that a submission waits for its marks before marking c
 
 
 class Health:
-    """Endpoint ``/health``: 200 while the database answers, 503 otherwise, for any host and without a session.
+    """Endpoint ``/health``: 200 while the database answers, 503 otherwise, for any host and without a
+    session.
 
     It tells nothing else of the site: ``{"database": "ok", "marking": "ok"}``; ``behind`` if submissions have
     waited longer than :data:`_BEHIND` for their marks, which is no reason to start the site again.

@@ -102,7 +102,8 @@ def _refusal(host: str, port: int, fault: OSError) -> Message:
     if fault.errno == errno.EADDRINUSE:
         return Message(
             (
-                "port {port} of {host} is in use, perhaps by another 'coursework serve': stop that one, or choose "
+                "port {port} of {host} is in use, perhaps by another 'coursework serve': stop that "
+                "one, or choose "
                 "another, --port {other}, or --port 0 for any free one"
             ),
             port=port,
@@ -112,13 +113,15 @@ def _refusal(host: str, port: int, fault: OSError) -> Message:
     if fault.errno == errno.EACCES:
         return Message(
             (
-                "port {port} is reserved for the system: choose one from 1024 on, and let a proxy listen at {port}"
+                "port {port} is reserved for the system: choose one from 1024 on, and let a proxy "
+                "listen at {port}"
             ),
             port=port,
         )
     return Message(
         (
-            "--host {host}: this machine cannot listen there ({problem}); 127.0.0.1 is for this machine only, "
+            "--host {host}: this machine cannot listen there ({problem}); 127.0.0.1 is for this "
+            "machine only, "
             "0.0.0.0 for every address of it"
         ),
         host=host,
@@ -154,10 +157,19 @@ def run(
     from uvicorn import Config
 
     config = Config(
-        partial(_application_of_process, make_application), factory=True, workers=workers, log_config=_logs(tells_all), access_log=False, server_header=False,
-        proxy_headers=has_proxy, forwarded_allow_ips="127.0.0.1",
-        timeout_keep_alive=_KEEP_ALIVE, http=_PROTOCOL, timeout_graceful_shutdown=_LAST_REQUESTS, timeout_worker_healthcheck=_SILENCE,
-    )  # fmt: skip
+        partial(_application_of_process, make_application),
+        factory=True,
+        workers=workers,
+        log_config=_logs(tells_all),
+        access_log=False,
+        server_header=False,
+        proxy_headers=has_proxy,
+        forwarded_allow_ips="127.0.0.1",
+        timeout_keep_alive=_KEEP_ALIVE,
+        http=_PROTOCOL,
+        timeout_graceful_shutdown=_LAST_REQUESTS,
+        timeout_worker_healthcheck=_SILENCE,
+    )
     _open_more()
     if workers > 1:
         _run_workers(config, at, ready)

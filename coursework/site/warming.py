@@ -1,5 +1,5 @@
-"""Warm-up of a process: it prepares solutions, the course's contents and templates, and where a worker marks also the
-lessons, so that the first request is not slow."""
+"""Warm-up of a process: it prepares solutions, the course's contents and templates, and where a worker marks
+also the lessons, so that the first request is not slow."""
 
 from __future__ import annotations
 

@@ -42,7 +42,8 @@ from coursework.site.papers.opening import prepare, prepare_soon
 from coursework.site.papers.submission import close_passed, rescue
 
 LOG = logging.getLogger("coursework.site")
-#: Delay after a date before saved answers are submitted, since a timely submission may still wait for the database.
+#: Delay after a date before saved answers are submitted, since a timely submission may still wait for the
+#: database.
 SETTLES = timedelta(seconds=20)
 _POLL = 0.3  #: seconds between two checks of an empty queue
 _DATES = 1.0  #: seconds between two checks of the dates

@@ -1,7 +1,8 @@
 """Structure of plane mechanisms: the joint graph, independent of all lengths.
 
 A mechanism is a list of joints, records ``{"between": [i, j], "kind": "revolute" | "prismatic" | "higher",
-"at": label}``; bodies are numbered from 1, the frame is 1. Whole numbers and sets throughout: nothing is rounded.
+"at": label}``; bodies are numbered from 1, the frame is 1. Whole numbers and sets throughout: nothing is
+rounded.
 
 ``joints``   the joint graph, its counts (mobility formula, independent cycles) and a basis of cycles
 ``assour``   Assour groups behind a driver, their classes, the class of the mechanism

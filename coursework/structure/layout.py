@@ -1,8 +1,8 @@
 """Layout of a mechanism's joints on paper: a plane picture in which bodies can be told apart.
 
-Lengths are free, so any places make a mechanism that closes. Places lie on whole millimetres of paper. They are
-found by moving one joint after another to where the picture reads best: bodies long enough, few bars that cross,
-no bar over a pin that is not its own. Nothing is left to chance: equal mechanisms have equal pictures.
+Lengths are free, so any places make a mechanism that closes. Places lie on whole millimetres of paper. They
+are found by moving one joint after another to where the picture reads best: bodies long enough, few bars that
+cross, no bar over a pin that is not its own. Nothing is left to chance: equal mechanisms have equal pictures.
 """
 
 from __future__ import annotations
@@ -132,7 +132,8 @@ class _Terms(NamedTuple):
 class _Picture:
     """Arrays of the lines and points that are drawn of a mechanism.
 
-    A line goes from a site to a site and ``beyond`` it, or has a fixed direction from its site (supports, rails).
+    A line goes from a site to a site and ``beyond`` it, or has a fixed direction from its site (supports,
+    rails).
     """
 
     def __init__(self, graph: JointGraph):
@@ -317,11 +318,13 @@ class _Picture:
         """Move every site of each picture in turn to its best position, over the whole sheet first, then
         nearby; return the pictures."""
         wide, high = self.box
-        sheet = np.array([
-            complex(x + (_SPACING // 2) * (y // _SPACING % 2), y)
-            for y in range(0, high + 1, _SPACING)
-            for x in range(0, wide + 1, _SPACING)
-        ])  # fmt: skip
+        sheet = np.array(
+            [
+                complex(x + (_SPACING // 2) * (y // _SPACING % 2), y)
+                for y in range(0, high + 1, _SPACING)
+                for x in range(0, wide + 1, _SPACING)
+            ]
+        )
         about = np.array([complex(x, y) for x in (-5, -2, -1, 0, 1, 2, 5) for y in (-5, -2, -1, 0, 1, 2, 5)])
         z = self._swept(z, lambda here: np.hstack([np.broadcast_to(sheet, (len(here), len(sheet))), here]))
         return self._swept(z, lambda here: here + about)

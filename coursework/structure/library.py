@@ -1,8 +1,8 @@
 """Mechanisms of the course's figures as joint graphs, with the drawn positions of their joints (chapter 3).
 
-Figures 13, 14 and 3, 7, 9, 10, 12 (the four-bar) are as the text and its equations describe them. The pictures
-of the others are lost: their structure follows from their titles. In all of them body 1 is the frame, body 2 the
-crank; joints bear the letters of the points.
+Figures 13, 14 and 3, 7, 9, 10, 12 (the four-bar) are as the text and its equations describe them. The
+pictures of the others are lost: their structure follows from their titles. In all of them body 1 is the
+frame, body 2 the crank; joints bear the letters of the points.
 """
 
 from __future__ import annotations
@@ -61,7 +61,8 @@ LIBRARY: Mapping[str, JointGraph] = MappingProxyType(
 _SHAPER_PLACES = {"O": 30 + 34j, "A": 47 + 44j, "C": 30, "P": 53.2 + 60j, "Q": 80 + 66j}
 _FOUR_BAR_PLACES = {"O": 0j, "A": 14 + 24j, "B": 58 + 38j, "C": 66 + 0j}
 
-#: Where a figure's joints are drawn, by letter: mm on paper. A figure like an earlier one is drawn as that one is.
+#: Where a figure's joints are drawn, by letter: mm on paper. A figure like an earlier one is drawn as that
+#: one is.
 PLACES: Mapping[str, Mapping[str, complex]] = MappingProxyType(
     {
         "figure_3": _FOUR_BAR_PLACES,
@@ -71,24 +72,52 @@ PLACES: Mapping[str, Mapping[str, complex]] = MappingProxyType(
         "figure_6_gears": {"O": 0j, "A": 13 + 0j, "B": 33 + 0j},
         "figure_8a_motor": {"O": 0j},
         "figure_8c_shaper": {
-            "O": 0j, "A": 8 + 18j, "B": 38 + 30j, "C": 48 + 8j, "D": 28 - 6j, "E": 82 + 0j, "F": 82 + 0j,
+            "O": 0j,
+            "A": 8 + 18j,
+            "B": 38 + 30j,
+            "C": 48 + 8j,
+            "D": 28 - 6j,
+            "E": 82 + 0j,
+            "F": 82 + 0j,
         },
         "figure_8d": {
-            "O": 0j, "A": -6 + 18j, "B": 14 + 42j, "C": 62 + 44j, "D": 58 + 20j, "E": 26 + 20j, "F": 78 + 0j,
+            "O": 0j,
+            "A": -6 + 18j,
+            "B": 14 + 42j,
+            "C": 62 + 44j,
+            "D": 58 + 20j,
+            "E": 26 + 20j,
+            "F": 78 + 0j,
         },
         "figure_13": {
-            "O": 0j, "A": 10 + 22j, "B": 42 + 32j, "C": 36 + 0j, "D": 58 + 18j, "E": 88 + 30j, "F": 82 + 0j,
+            "O": 0j,
+            "A": 10 + 22j,
+            "B": 42 + 32j,
+            "C": 36 + 0j,
+            "D": 58 + 18j,
+            "E": 88 + 30j,
+            "F": 82 + 0j,
         },
         "figure_14": {
-            "O": 0j, "A": -12 + 18j, "B": 26 + 26j, "C": 34 + 0j, "E": 14 + 50j,
-            "D": -22 + 40j, "F": 59 + 62.5j, "G": 92 + 54j,
+            "O": 0j,
+            "A": -12 + 18j,
+            "B": 26 + 26j,
+            "C": 34 + 0j,
+            "E": 14 + 50j,
+            "D": -22 + 40j,
+            "F": 59 + 62.5j,
+            "G": 92 + 54j,
         },
         "figure_26b": _SHAPER_PLACES,
         "figure_27": {
-            "O": 0j, "A": 8 + 18j, "B": 46 + 34j, "D": 40 + 0j, "C": 86 + 26j,
+            "O": 0j,
+            "A": 8 + 18j,
+            "B": 46 + 34j,
+            "D": 40 + 0j,
+            "C": 86 + 26j,
         },
     }
-)  # fmt: skip
+)
 
 #: Of fixed rails that are not level, by figure and letter: degrees.
 RAILS: Mapping[str, Mapping[str, float]] = MappingProxyType({"figure_6_cam": {"B": 90.0}})

@@ -63,7 +63,8 @@ def install(staging: Path, out: Path, *, anew: bool) -> list[str]:
         )
         raise BadInput(
             (
-                "{names} was changed since the last build, and this one would replace it; move it, choose another "
+                "{names} was changed since the last build, and this one would replace it; move it, "
+                "choose another "
                 "--out, or --overwrite to keep it under another name"
             ),
             names=names,
@@ -103,7 +104,8 @@ def install(staging: Path, out: Path, *, anew: bool) -> list[str]:
 
 
 def count_as_built(path: Path) -> None:
-    """List a file of a build that a command has written anew as the build's own, so that the next build replaces it."""
+    """List a file of a build that a command has written anew as the build's own, so that the next build
+    replaces it."""
     before, _ = _read(path.parent / LIST)
     if path.name in before:
         _write(path.parent / LIST, {**before, path.name: [_digest(path)]})

@@ -73,7 +73,9 @@ def _records(text: str, delimiter: str) -> list[list[PositionedCell]]:
     records: list[list[PositionedCell]] = []
     row: list[PositionedCell] = []
     cell = re.compile(
-        rf'[ ]*"(?P<quoted>(?:[^"]|"")*)"(?P<behind>[^{re.escape(delimiter)}\r\n]*)|(?P<bare>[^{re.escape(delimiter)}\r\n]*)'
+        r"[ "
+        rf']*"(?P<quoted>(?:[^"]|"")*)"(?P<behind>[^{re.escape(delimiter)}\r\n]*)'
+        rf"|(?P<bare>[^{re.escape(delimiter)}\r\n]*)"
     )
     position = 0
     while position <= len(text):

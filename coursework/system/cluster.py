@@ -1,7 +1,8 @@
 """Cluster that shares a large job: the workers of a Dask scheduler instead of processes of this machine.
 
 Dask distributes the tasks and sends a task again if its worker ends. This module sends a task again if the
-scheduler is lost, and ends the run if no worker is left: joblib 1.6 above Dask ends it as soon as the scheduler is lost.
+scheduler is lost, and ends the run if no worker is left: joblib 1.6 above Dask ends it as soon as the
+scheduler is lost.
 """
 
 from __future__ import annotations
@@ -69,12 +70,14 @@ def cluster(address: str, load: Payload) -> Iterator[None]:
     match = _FORM.fullmatch(address)
     if match is None:
         raise BadInput(
-            "--cluster takes the address of a scheduler, tcp://HOST:8786 or tls://HOST:8786, or local:N for N workers of this machine; found {address!r}",
+            "--cluster takes the address of a scheduler, tcp://HOST:8786 or tls://HOST:8786, or "
+            "local:N for N workers of this machine; found {address!r}",
             address=address,
         )
     if match["count"] and not others_can_start():
         raise BadInput(
-            "--cluster local:N starts processes, which a script from standard input cannot; write it to a file"
+            "--cluster local:N starts processes, which a script from standard input cannot; write it "
+            "to a file"
         )
     library("distributed", "--cluster needs", "cluster")
     with ExitStack() as stack:
@@ -173,7 +176,8 @@ class _Cluster:
             self._client = await self._connected()
         except Exception as fault:
             raise BadInput(
-                "no scheduler answers at {address} (waited {seconds:g} s: {problem}); start one there, 'dask scheduler', or name another",
+                "no scheduler answers at {address} (waited {seconds:g} s: {problem}); start one there, "
+                "'dask scheduler', or name another",
                 address=self._address,
                 seconds=CONNECT,
                 problem=_line(fault),
@@ -294,7 +298,8 @@ async def _left(resource: Any) -> None:
 def _without_package(address: str, fault: Exception) -> CourseworkError:
     return CourseworkError(
         (
-            "a worker at {address} does not have this package, or has another version ({problem}): install the "
+            "a worker at {address} does not have this package, or has another version ({problem}): "
+            "install the "
             "same version there"
         ),
         address=address,

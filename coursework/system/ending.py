@@ -53,7 +53,8 @@ def has_ended() -> None:
 
 
 def leave(status: int) -> NoReturn:
-    """End this process, after a signal also if a thread does not end: it may wait for a lock that the signal left taken."""
+    """End this process, after a signal also if a thread does not end: it may wait for a lock that the signal
+    left taken."""
     if _is_ended:
         last = time.monotonic() + _GRACE
         for thread in threading.enumerate():

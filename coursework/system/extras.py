@@ -24,7 +24,8 @@ def library(module: str, job: str, extra: str) -> ModuleType:
     Raises
     ------
     NotAtHand
-        It is not installed, or fails when it is loaded, as one does that was built for another version of NumPy.
+        It is not installed, or fails when it is loaded, as one does that was built for another version of
+        NumPy.
     """
     name = module.partition(".")[0]
     try:
@@ -40,7 +41,8 @@ def library(module: str, job: str, extra: str) -> ModuleType:
         message = " ".join(str(fault).split())[:120]
         raise NotAtHand(
             (
-                "{job} {name}, which is installed but cannot be loaded ({error}: {message}): pip install --upgrade "
+                "{job} {name}, which is installed but cannot be loaded ({error}: {message}): pip "
+                "install --upgrade "
                 "--force-reinstall {name}, or a version that fits the installed NumPy"
             ),
             job=Message(job),

@@ -1,4 +1,5 @@
-"""Lock of a folder that one command at a time writes: of the operating system, on a file in it that names the process.
+"""Lock of a folder that one command at a time writes: of the operating system, on a file in it that names the
+process.
 
 The system releases the lock when the process ends, however that ends; the file goes at the command's end.
 """
@@ -38,7 +39,8 @@ def only_writer(folder: Path, command: str = "") -> Iterator[None]:
             with writing(folder):
                 if not locked.enter_context(file_lock(path, _RELEASING)):
                     raise BadInput(
-                        "another command is writing into {folder}: {owner}; wait until it has ended, or choose another folder",
+                        "another command is writing into {folder}: {owner}; wait until it has ended, "
+                        "or choose another folder",
                         folder=folder,
                         owner=_owner(path),
                     )
@@ -58,7 +60,8 @@ def _owner(path: Path) -> str:
 
 @contextmanager
 def file_lock(path: Path, seconds: float) -> Iterator[bool]:
-    """Lock a file, which is made and removed, while the context lasts; yield whether it was free within some seconds."""
+    """Lock a file, which is made and removed, while the context lasts; yield whether it was free within some
+    seconds."""
     from filelock import FileLock, Timeout
 
     lock = FileLock(path, timeout=seconds, poll_interval=_POLL, mode=0o644)

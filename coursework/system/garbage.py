@@ -1,5 +1,5 @@
-"""Cyclic garbage collection of the process, paused while a great many objects are made that stay: it would look through all of
-them again and again, for two fifths of the time."""
+"""Cyclic garbage collection of the process, paused while a great many objects are made that stay: it would
+look through all of them again and again, for two fifths of the time."""
 
 from __future__ import annotations
 

@@ -1,4 +1,5 @@
-"""Security headers: one policy for every response of an application, with more where a platform frames a page."""
+"""Security headers: one policy for every response of an application, with more where a platform frames a
+page."""
 
 from __future__ import annotations
 
@@ -63,7 +64,8 @@ def origin(url: str) -> str:
 
 
 def cookie_name(is_secure: bool, name: str = "coursework") -> str:
-    """Return the name of a cookie: over https the prefix keeps neighbouring hosts from setting one in its place."""
+    """Return the name of a cookie: over https the prefix keeps neighbouring hosts from setting one in its
+    place."""
     return f"__Host-{name}" if is_secure else name
 
 

@@ -1,4 +1,5 @@
-"""Question to a site whether it is well: ``python -m coursework.system.health_check URL [SECONDS]``, with status 0 if it is."""
+"""Question to a site whether it is well: ``python -m coursework.system.health_check URL [SECONDS]``, with
+status 0 if it is."""
 
 from __future__ import annotations
 

@@ -30,7 +30,8 @@ class Walked(NamedTuple):
 
 
 def walked(folder: Path) -> Walked:
-    """Walk a folder. A link to a file in it is a file; one to a folder in it is not walked, since that folder is."""
+    """Walk a folder. A link to a file in it is a file; one to a folder in it is not walked, since that folder
+    is."""
     result = Walked([], [])
     for path in sorted(folder.rglob("*")):
         if path.is_symlink() and leads_out(path, folder):
@@ -41,7 +42,8 @@ def walked(folder: Path) -> Walked:
 
 
 def leads_out(path: Path, folder: Path) -> bool:
-    """Return whether a path leads out of a folder: itself, through other links, or by a folder above it; or nowhere."""
+    """Return whether a path leads out of a folder: itself, through other links, or by a folder above it; or
+    nowhere."""
     try:
         return not path.resolve(strict=True).is_relative_to(folder.resolve())
     except (OSError, RuntimeError):  # nothing is there, or links in a ring

@@ -15,8 +15,8 @@ _ARENAS = -8  #: ``M_ARENA_MAX`` of glibc's ``malloc.h``
 def little_memory() -> Iterator[None]:
     """Let threads that start within the context share one heap, and give back at its end what is free.
 
-    Otherwise each thread has a heap of its own, and what one frees no other can use. Other systems than glibc's are left as
-    they are.
+    Otherwise each thread has a heap of its own, and what one frees no other can use. Other systems than
+    glibc's are left as they are.
     """
     _heap_function("mallopt")(_ARENAS, 1)
     try:

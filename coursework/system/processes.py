@@ -166,7 +166,8 @@ def processes(count: int) -> Iterator[Submit]:
                 raise
     except BrokenProcessPool as broken:
         raise CourseworkError(
-            "a worker process ended by itself: there was too little memory, or a script starts the work outside "
+            "a worker process ended by itself: there was too little memory, or a script starts the "
+            "work outside "
             "of 'if __name__ == \"__main__\":'; free some memory, or put that line before it"
         ) from broken
 
@@ -288,7 +289,8 @@ def _run_background(job: Callable[..., Any], arguments: tuple[Any, ...]) -> None
 @contextmanager
 def uninterrupted() -> Iterator[None]:
     """Start processes in a critical section: neither they nor this process react to interrupts, and each
-    starts completely before a signal ends this process. Other threads than the main thread get no protection."""
+    starts completely before a signal ends this process. Other threads than the main thread get no
+    protection."""
     if threading.current_thread() is not threading.main_thread():
         yield
         return
@@ -321,7 +323,8 @@ class ResourceLimits(NamedTuple):
     seconds: float
     memory: int
     niceness: int = _NICE  #: 0 where somebody waits for the result
-    is_warm: bool = False  #: it begins with the function's module loaded: in a tenth of the time, for memory that stays taken
+    #: It begins with the function's module loaded: in a tenth of the time, for memory that stays taken.
+    is_warm: bool = False
 
 
 class Exceeded(CourseworkError):
@@ -377,8 +380,8 @@ def confined(means: ResourceLimits, function: Callable[..., Any], *arguments: An
 
 
 def _context(module: str) -> Any:
-    """Return the way in which a process begins: as a copy of one that has loaded a module, where a module is named and the
-    system can."""
+    """Return the way in which a process begins: as a copy of one that has loaded a module, where a module is
+    named and the system can."""
     if not module or "forkserver" not in multiprocessing.get_all_start_methods():
         return multiprocessing.get_context("spawn")
     context = multiprocessing.get_context("forkserver")

@@ -15,7 +15,8 @@ _PAUSE = 0.1
 def scrub(path: Path, patience: float = 5.0) -> bool:
     """Rewrite a database without deleted content, and truncate its write-ahead log.
 
-    Other processes may have it open. One that reads an older state, or writes, keeps the log from being cut; it is waited for.
+    Other processes may have it open. One that reads an older state, or writes, keeps the log from being cut;
+    it is waited for.
 
     Parameters
     ----------

@@ -1,4 +1,5 @@
-"""TOML files that people write: read within limits, with the line of each key for messages; and values as such a file states them."""
+"""TOML files that people write: read within limits, with the line of each key for messages; and values as
+such a file states them."""
 
 from __future__ import annotations
 
@@ -113,7 +114,8 @@ def table_of(source: str, source_name: str) -> dict[str, Any]:
 
 
 def _syntax_fault(source: str, source_name: str, told: str) -> BadInput:
-    """Return what the reader of TOML says, with the line as it stands and what would do where people often slip."""
+    """Return what the reader of TOML says, with the line as it stands and what would do where people often
+    slip."""
     match = re.fullmatch(r"(.*) \(at line (\d+), column \d+\)", told, re.DOTALL)
     if match is None:
         return BadInput("{source_name}: {problem}", source_name=source_name, problem=told)
@@ -126,14 +128,18 @@ def _syntax_fault(source: str, source_name: str, told: str) -> BadInput:
         problem = Message("a table begins with [name], each of several alike with [[name]]")
     elif match[1].startswith(("Expected", "Invalid value")):
         problem = Message(
-            'a line is name = value, with texts in straight quotation marks, ", and a decimal point in numbers'
+            'a line is name = value, with texts in straight quotation marks, ", and a decimal point in '
+            "numbers"
         )
     number = int(match[2])
     line = source.split("\n")[number - 1].strip()[:80]
     return BadInput(
         "{source_name}, line {number}: {problem}; found {line}",
-        source_name=source_name, number=number, problem=problem, line=line,
-    )  # fmt: skip
+        source_name=source_name,
+        number=number,
+        problem=problem,
+        line=line,
+    )
 
 
 def _holds_huge(value: Any) -> bool:
@@ -166,7 +172,8 @@ class TomlReader:
         self.path, self.source = path, source
 
     def refused(self, at: Sequence[str | int], template: str, /, **values: Any) -> BadInput:
-        """Return the error of a key, with file and line: a message, or its template and the values that fill it."""
+        """Return the error of a key, with file and line: a message, or its template and the values that fill
+        it."""
         why = template if isinstance(template, Message) else Message(template, **values)
         if line := line_of(self.source, at):
             return BadInput("{file}, line {line}: {problem}", file=self.path, line=line, problem=why)

@@ -16,8 +16,17 @@ from coursework.errors import BadInput
 _CHUNK = 1 << 16
 #: Errors of a damaged archive: in its structure, in decompression, or at a file without a name.
 _DAMAGED = (
-    zipfile.BadZipFile, zlib.error, struct.error, LZMAError, RuntimeError, EOFError, OSError, ValueError, LookupError, OverflowError,
-)  # fmt: skip
+    zipfile.BadZipFile,
+    zlib.error,
+    struct.error,
+    LZMAError,
+    RuntimeError,
+    EOFError,
+    OSError,
+    ValueError,
+    LookupError,
+    OverflowError,
+)
 
 
 class ArchiveLimits(NamedTuple):
@@ -44,7 +53,8 @@ def unpack(archive: Path, folder: Path, limits: ArchiveLimits = USUAL) -> list[P
     Raises
     ------
     BadInput
-        The file is no archive, is encrypted, names a path outside the folder, or exceeds the limits; unpacking stops there.
+        The file is no archive, is encrypted, names a path outside the folder, or exceeds the limits;
+        unpacking stops there.
     """
     written: list[Path] = []
     left = limits.total

@@ -22,8 +22,8 @@ Content: TypeAlias = bytes | Iterable[bytes]
 
 @dataclass(frozen=True)
 class File:
-    """File of the result: its path below the output folder, and a function that returns its bytes, in pieces if
-    they are many, or None for no file.
+    """File of the result: its path below the output folder, and a function that returns its bytes, in pieces
+    if they are many, or None for no file.
 
     ``anywhere`` lets another process make it: ``make`` and all that it holds can be pickled. ``failed``, if
     given, receives the error, and the other files are still written.
@@ -227,7 +227,8 @@ class Tables:
     Raises
     ------
     BadInput
-        A table cannot be replaced; checked before the first is written, and again before the first replacement.
+        A table cannot be replaced; checked before the first is written, and again before the first
+        replacement.
     """
 
     def __init__(self, folder: Path, spreadsheet: Spreadsheet = SPREADSHEETS["point"]) -> None:
@@ -282,7 +283,8 @@ def _replacement_errors(path: Path) -> Iterator[None]:
     except OSError as fault:
         raise BadInput(
             (
-                "{file} cannot be written ({reason}); close the program that has it open, move the file, or choose "
+                "{file} cannot be written ({reason}); close the program that has it open, move the "
+                "file, or choose "
                 "another --out"
             ),
             file=path,

@@ -41,7 +41,8 @@ def zipped(files: Mapping[str, bytes | PackedFile], programs: Collection[str] = 
             info.compress_type, info.create_system = zipfile.ZIP_DEFLATED, 3
             info.external_attr = _PROGRAM if path in programs else _FILE
             info.compress_size, info.file_size, info.CRC = len(member.data), member.size, member.crc
-            # As the library does for what it compresses itself; it has no call for what is compressed already.
+            # As the library does for what it compresses itself; it has no call for what is compressed
+            # already.
             info.header_offset = buffer.tell()
             buffer.write(info.FileHeader(zip64=False) + member.data)
             archive.filelist.append(info)

@@ -1,4 +1,5 @@
-"""Symbols of the joints in space for the table of joints: in perspective, and in plan as ISO 3952 draws them."""
+"""Symbols of the joints in space for the table of joints: in perspective, and in plan as ISO 3952 draws
+them."""
 
 import cmath
 import math

@@ -4,7 +4,8 @@ from typing import NamedTuple
 
 
 class Layout(NamedTuple):
-    """Bodies between which each joint lies, by place of the joint, and the body of the output; body 1 is the input."""
+    """Bodies between which each joint lies, by place of the joint, and the body of the output; body 1 is the
+    input."""
 
     between: tuple[tuple[int, int], ...]
     output: int

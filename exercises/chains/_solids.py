@@ -73,7 +73,8 @@ def coordinate() -> GivenSpec:
 
 
 def table(*joints, tilt=""):
-    """The lines of a statement's table of joints, each (bodies, name, direction, point), all turned by a ``tilt``."""
+    """The lines of a statement's table of joints, each (bodies, name, direction, point), all turned by a
+    ``tilt``."""
     return [_line(k, *joint, tilt) for k, joint in enumerate(joints, start=1)]
 
 
@@ -93,7 +94,8 @@ def _line(number, bodies, name, along, point, tilt):
 
 
 def vector_latex(vector):
-    """The unit vector along whole numbers, as a formula: ``\\vec x``, ``\\frac{3\\,\\vec x - 4\\,\\vec y}{5}``."""
+    """The unit vector along whole numbers, as a formula: ``\\vec x``,
+    ``\\frac{3\\,\\vec x - 4\\,\\vec y}{5}``."""
     common = gcd(*vector)
     vector = [x // common for x in vector]
     told = ""
@@ -120,7 +122,8 @@ def combined(combination: str, *joints: AlignedJoint) -> Parallel | Series:
 
 @cache
 def _motions() -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Names "joint direction" in order, the freedoms of each, and the products T' T of its twists at its point."""
+    """Names "joint direction" in order, the freedoms of each, and the products T' T of its twists at its
+    point."""
     pairs = _every_joint()
     twists = [np.array(joint_of(aligned(n, a)).twists((0.0, 0.0, 0.0), 1.0)) for _, n, a in pairs]
     return (
@@ -163,7 +166,8 @@ def _carry(point, shape) -> np.ndarray:
 
 
 def rank_together(combination, arrangement, inclined, *joints):
-    """The rank of what joints transmit in parallel or let move in series, of columns; each joint is (name, direction, x, y, z).
+    """The rank of what joints transmit in parallel or let move in series, of columns; each joint is (name,
+    direction, x, y, z).
 
     A tilt turns all of them alike and changes nothing.
     """
@@ -193,12 +197,14 @@ _IN_SPACE, _IN_PLANE = (
 
 
 def mobility_of_loop(joints, directions, points):
-    """Mobility of one closed loop: columns of names, of directions, and of points as triples of columns in mm."""
+    """Mobility of one closed loop: columns of names, of directions, and of points as triples of columns in
+    mm."""
     return mobility_of_loops([[1]] * len(joints), joints, directions, points)
 
 
 def mobility_of_loops(senses, joints, directions, points, *, in_plane=False):
-    """Mobility of a chain, of columns: for many draws at once, where the solution takes one chain after the other.
+    """Mobility of a chain, of columns: for many draws at once, where the solution takes one chain after the
+    other.
 
     ``senses`` has a row a joint: in each loop, whether it is met along (1), against (-1)
     or not (0). The columns are those of :func:`mobility_of_loop`.
@@ -218,7 +224,8 @@ def mobility_of_loops(senses, joints, directions, points, *, in_plane=False):
 
 
 def evenly(*columns):
-    """A number in [0, 1) for each row of columns, spread evenly and the same for ever: by which draws are thinned out."""
+    """A number in [0, 1) for each row of columns, spread evenly and the same for ever: by which draws are
+    thinned out."""
     told = [
         np.asarray(column).astype(str)
         if np.asarray(column).dtype.kind in "US"
@@ -238,8 +245,9 @@ def _planar_freedoms() -> np.ndarray:
 
 
 def several_joints(third: tuple[str, ...]) -> dict[str, GivenSpec]:
-    """Given: two to four joints, the first at the origin, by :func:`coursework.structure.spatial_chains.arranged`; ``third`` are the names of
-    the third and the fourth."""
+    """Given: two to four joints, the first at the origin, by
+    :func:`coursework.structure.spatial_chains.arranged`; ``third`` are the names of the third and the
+    fourth."""
     found = {
         "arrangement": chosen(*ARRANGEMENTS, shown=False),
         "tilt": direction(),
@@ -257,7 +265,8 @@ GIVEN = tuple(several_joints(DRAWN))
 
 
 def of_joints(read):
-    """A function of all that is given, from one of (arrangement, tilt, inclined, joint, …), each joint (name, direction, x, y, z)."""
+    """A function of all that is given, from one of (arrangement, tilt, inclined, joint, …), each joint (name,
+    direction, x, y, z)."""
 
     def told(*given):
         arrangement, tilt, inclined, name, along, *others = given
@@ -271,13 +280,14 @@ def of_joints(read):
 
 
 def table_of(joints, bodies):
-    """The lines of a statement's table of joints that are :class:`~coursework.structure.spatial_chains.AlignedJoint`."""
+    """The lines of a statement's table of joints that are
+    :class:`~coursework.structure.spatial_chains.AlignedJoint`."""
     return [_line(k + 1, bodies[k], *joint) for k, joint in enumerate(joints)]
 
 
 def axis_parts(has_direction, has_line):
-    """The questions about the axis of an equivalent joint, each asked where the joint has one; where it has none, others
-    worth as much, about the motions that it allows."""
+    """The questions about the axis of an equivalent joint, each asked where the joint has one; where it has
+    none, others worth as much, about the motions that it allows."""
 
     def without(has):
         def lacks(*given):

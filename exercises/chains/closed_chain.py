@@ -18,9 +18,24 @@ from ._solids import (
 
 
 def tells(
-    joint_1, direction_1, joint_2, direction_2, joint_3, direction_3, joint_4, direction_4,
-    x2, y2, z2, x3, y3, z3, x4, y4, z4,
-):  # fmt: skip
+    joint_1,
+    direction_1,
+    joint_2,
+    direction_2,
+    joint_3,
+    direction_3,
+    joint_4,
+    direction_4,
+    x2,
+    y2,
+    z2,
+    x3,
+    y3,
+    z3,
+    x4,
+    y4,
+    z4,
+):
     return {
         "rows": table(
             ((0, 1), joint_1, direction_1, (0, 0, 0)),
@@ -32,13 +47,43 @@ def tells(
 
 
 def figure(
-    joint_1, direction_1, joint_2, direction_2, joint_3, direction_3, joint_4, direction_4,
-    x2, y2, z2, x3, y3, z3, x4, y4, z4,
-):  # fmt: skip
+    joint_1,
+    direction_1,
+    joint_2,
+    direction_2,
+    joint_3,
+    direction_3,
+    joint_4,
+    direction_4,
+    x2,
+    y2,
+    z2,
+    x3,
+    y3,
+    z3,
+    x4,
+    y4,
+    z4,
+):
     rows = tells(
-        joint_1, direction_1, joint_2, direction_2, joint_3, direction_3, joint_4, direction_4,
-        x2, y2, z2, x3, y3, z3, x4, y4, z4,
-    )["rows"]  # fmt: skip
+        joint_1,
+        direction_1,
+        joint_2,
+        direction_2,
+        joint_3,
+        direction_3,
+        joint_4,
+        direction_4,
+        x2,
+        y2,
+        z2,
+        x3,
+        y3,
+        z3,
+        x4,
+        y4,
+        z4,
+    )["rows"]
     return in_perspective(rows, bodies=((1, 1, 2), (2, 2, 3), (3, 3, 4), (0, 4, 1)), tall=26)
 
 
@@ -56,9 +101,24 @@ def no_body_passes_through_another_joint(x2, y2, z2, x3, y3, z3, x4, y4, z4):
 
 
 def mobility(
-    joint_1, direction_1, joint_2, direction_2, joint_3, direction_3, joint_4, direction_4,
-    x2, y2, z2, x3, y3, z3, x4, y4, z4,
-):  # fmt: skip
+    joint_1,
+    direction_1,
+    joint_2,
+    direction_2,
+    joint_3,
+    direction_3,
+    joint_4,
+    direction_4,
+    x2,
+    y2,
+    z2,
+    x3,
+    y3,
+    z3,
+    x4,
+    y4,
+    z4,
+):
     """Of the whole chain, at the given position."""
     return mobility_of_loop(
         (joint_1, joint_2, joint_3, joint_4),
@@ -75,14 +135,31 @@ def mobility_is_small(mobility):
     return mobility <= 3
 
 
-#: Share of the draws of each rank that are let through: of 6 most are drawn, and who writes 6 everywhere would be right in most.
+#: Share of the draws of each rank that are let through: of 6 most are drawn, and who writes 6 everywhere
+#: would be right in most.
 LET_THROUGH = {6: 0.2, 5: 0.5, 4: 0.8}
 
 
 def ranks_are_mixed(
-    joint_1, direction_1, joint_2, direction_2, joint_3, direction_3, joint_4, direction_4,
-    x2, y2, z2, x3, y3, z3, x4, y4, z4, mobility,
-):  # fmt: skip
+    joint_1,
+    direction_1,
+    joint_2,
+    direction_2,
+    joint_3,
+    direction_3,
+    joint_4,
+    direction_4,
+    x2,
+    y2,
+    z2,
+    x3,
+    y3,
+    z3,
+    x4,
+    y4,
+    z4,
+    mobility,
+):
     joints = (joint_1, joint_2, joint_3, joint_4)
     rank = sum(freedoms_of(joint) for joint in joints) - mobility
     share = np.select([rank == n for n in LET_THROUGH], list(LET_THROUGH.values()), 1.0)

@@ -1,4 +1,5 @@
-"""A mechanism of several loops: loops, ranks, mobility that is useful and internal, and what constraint entails."""
+"""A mechanism of several loops: loops, ranks, mobility that is useful and internal, and what constraint
+entails."""
 
 import numpy as np
 
@@ -22,9 +23,25 @@ def four_bar_is_off_its_dead_points(xA, yA, xB, yB, xC):
 
 
 def tells(
-    layout, joint_1, joint_2, joint_3, joint_4, joint_5, joint_6, joint_7, joint_8,
-    xA, yA, xB, yB, xC, xD, yD, xE, yE,
-):  # fmt: skip
+    layout,
+    joint_1,
+    joint_2,
+    joint_3,
+    joint_4,
+    joint_5,
+    joint_6,
+    joint_7,
+    joint_8,
+    xA,
+    yA,
+    xB,
+    yB,
+    xC,
+    xD,
+    yD,
+    xE,
+    yE,
+):
     """The lines of the table, and the body of the output."""
     names = (joint_1, joint_2, joint_3, joint_4, joint_5, joint_6, joint_7, joint_8)
     points = points_of(xA, yA, xB, yB, xC, xD, yD, xE, yE)
@@ -83,9 +100,25 @@ def figure(layout, xA, yA, xB, yB, xC, xD, yD, xE, yE):
 
 
 def mobility(
-    layout, joint_1, joint_2, joint_3, joint_4, joint_5, joint_6, joint_7, joint_8,
-    xA, yA, xB, yB, xC, xD, yD, xE, yE,
-):  # fmt: skip
+    layout,
+    joint_1,
+    joint_2,
+    joint_3,
+    joint_4,
+    joint_5,
+    joint_6,
+    joint_7,
+    joint_8,
+    xA,
+    yA,
+    xB,
+    yB,
+    xC,
+    xD,
+    yD,
+    xE,
+    yE,
+):
     """Of the whole chain, at the given position."""
     joints = (joint_1, joint_2, joint_3, joint_4, joint_5, joint_6, joint_7, joint_8)
     points = points_of(xA, yA, xB, yB, xC, xD, yD, xE, yE)

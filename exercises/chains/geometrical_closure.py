@@ -1,4 +1,5 @@
-"""A crank whose ball moves a fork about an axis at right angles: geometrical closure, and the law of a zero product."""
+"""A crank whose ball moves a fork about an axis at right angles: geometrical closure, and the law of a zero
+product."""
 
 import numpy as np
 

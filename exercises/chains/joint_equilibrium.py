@@ -1,4 +1,5 @@
-"""Equilibrium of a joint: a shaft on two bearings, what each of them bears, and what a stiffer one would make of it."""
+"""Equilibrium of a joint: a shaft on two bearings, what each of them bears, and what a stiffer one would make
+of it."""
 
 from coursework.figures import Figure, axes, dimension, ground_pivot, line, link, point, vector
 from coursework.model import Exercise, Part, chosen, detectable, drawn
@@ -55,12 +56,25 @@ EXERCISE = Exercise(
         bearings_bear_visibly,
         *(
             detectable(mistake, "Y_B", "Z_B", "Y_A", "Z_A", "Gamma")
-            for mistake in ("axial_force_without_a_moment", "axial_moment_reversed", "arm_from_the_other_bearing", "half_each")
+            for mistake in (
+                "axial_force_without_a_moment",
+                "axial_moment_reversed",
+                "arm_from_the_other_bearing",
+                "half_each",
+            )
         ),
     ),
     parts=(
-        Part("moment_z", kind="equation", variables=("Y_B", "F_x", "F_y", "b", "d", "R"), parameters=("b", "d", "R"), points=2),
-        Part("moment_y", kind="equation", variables=("Z_B", "F_z", "b", "d"), parameters=("b", "d"), points=1),
+        Part(
+            "moment_z",
+            kind="equation",
+            variables=("Y_B", "F_x", "F_y", "b", "d", "R"),
+            parameters=("b", "d", "R"),
+            points=2,
+        ),
+        Part(
+            "moment_y", kind="equation", variables=("Z_B", "F_z", "b", "d"), parameters=("b", "d"), points=1
+        ),
         Part("X", unit="N", points=1),
         Part("Y_B", unit="N", points=1),
         Part("Z_B", unit="N", points=1),
@@ -72,4 +86,4 @@ EXERCISE = Exercise(
     ),
     symbols={"Ns": "N_s", "Gamma": r"\Gamma", "other": "B'"},
     figure=figure,
-)  # fmt: skip
+)

@@ -1,4 +1,5 @@
-"""Twists and wrenches of joints at a point: which components may differ from zero, carried to another point, added up."""
+"""Twists and wrenches of joints at a point: which components may differ from zero, carried to another point,
+added up."""
 
 import numpy as np
 

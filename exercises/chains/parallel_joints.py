@@ -1,4 +1,5 @@
-"""Two to four joints between the same two bodies: static unknowns, mobility, and the joint that replaces them."""
+"""Two to four joints between the same two bodies: static unknowns, mobility, and the joint that replaces
+them."""
 
 from coursework.figures.perspective import in_perspective
 from coursework.model import Exercise, Part

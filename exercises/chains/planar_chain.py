@@ -71,9 +71,21 @@ def few_freedoms_in_space(joint_1, joint_2, joint_3, joint_4):
 
 
 def tells(
-    joint_1, direction_1, joint_2, direction_2, joint_3, direction_3, joint_4, direction_4,
-    x2, y2, x3, y3, x4, y4,
-):  # fmt: skip
+    joint_1,
+    direction_1,
+    joint_2,
+    direction_2,
+    joint_3,
+    direction_3,
+    joint_4,
+    direction_4,
+    x2,
+    y2,
+    x3,
+    y3,
+    x4,
+    y4,
+):
     """The lines of the table."""
     names = (joint_1, joint_2, joint_3, joint_4)
     along = (direction_1, direction_2, direction_3, direction_4)
@@ -108,9 +120,21 @@ def figure(x2, y2, x3, y3, x4, y4):
 
 
 def mobility(
-    joint_1, direction_1, joint_2, direction_2, joint_3, direction_3, joint_4, direction_4,
-    x2, y2, x3, y3, x4, y4,
-):  # fmt: skip
+    joint_1,
+    direction_1,
+    joint_2,
+    direction_2,
+    joint_3,
+    direction_3,
+    joint_4,
+    direction_4,
+    x2,
+    y2,
+    x3,
+    y3,
+    x4,
+    y4,
+):
     """In the plane, at the given position."""
     return mobility_of_loops(
         [[1]] * 4,

@@ -1,4 +1,5 @@
-"""Two to four joints in a row: kinematic unknowns, useful and internal mobility, and the joint that replaces the row."""
+"""Two to four joints in a row: kinematic unknowns, useful and internal mobility, and the joint that replaces
+the row."""
 
 import hashlib
 from functools import lru_cache
@@ -28,7 +29,8 @@ STIFF = ("revolute", "prismatic", "cylindrical", "spherical")
 
 @of_joints
 def longer_rows_have_few_freedoms(arrangement, tilt, inclined, *joints):
-    """Of three or four joints, seven at most: among them rows with six at this position, and with an inner one."""
+    """Of three or four joints, seven at most: among them rows with six at this position, and with an inner
+    one."""
     counts = np.vectorize(lambda name: ARRANGEMENTS[name][0])(np.atleast_1d(arrangement))
     every = [freedoms_of(name) * (number < counts) for number, (name, *_) in enumerate(joints)]
     return (counts == 2) | (np.sum(every, axis=0) <= 7)

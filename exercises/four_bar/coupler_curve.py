@@ -1,4 +1,5 @@
-"""Coupler curve: where is a point of the coupler, how fast and which way does it go, and which curve does it draw?"""
+"""Coupler curve: where is a point of the coupler, how fast and which way does it go, and which curve does it
+draw?"""
 
 from itertools import permutations
 

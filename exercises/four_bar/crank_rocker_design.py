@@ -1,4 +1,5 @@
-"""Crank-rocker to be designed: find lengths that give a wanted swing and time ratio (quick return, reversed)."""
+"""Crank-rocker to be designed: find lengths that give a wanted swing and time ratio (quick return,
+reversed)."""
 
 from coursework.degrees import angle, polar
 from coursework.figures import Figure, angle_mark, ground_pivot, line, link, pin, point, rotation_arrow

@@ -1,4 +1,5 @@
-"""Instant centres of a four-bar linkage: by the theorem of three centres, and the velocities that follow from them."""
+"""Instant centres of a four-bar linkage: by the theorem of three centres, and the velocities that follow from
+them."""
 
 from coursework.figures import Figure, angle_mark, ground_pivot, line, link, pin, point
 from coursework.model import Driver, Exercise, Part, chosen, detectable, drawn, in_turn
@@ -72,8 +73,13 @@ EXERCISE = Exercise(
         *(
             detectable(mistake, "d13", "x24", "omega3", "omega4", "v_M")
             for mistake in (
-                "other_mode", "measured_from_A", "I24_measured_from_C", "speed_of_A_over_its_distance_to_O",
-                "ratio_upside_down", "about_A", "mean_of_the_ends",
+                "other_mode",
+                "measured_from_A",
+                "I24_measured_from_C",
+                "speed_of_A_over_its_distance_to_O",
+                "ratio_upside_down",
+                "about_A",
+                "mean_of_the_ends",
             )
         ),
     ),
@@ -93,4 +99,4 @@ EXERCISE = Exercise(
         "v_M": "v_M",
     },
     driver=Driver("theta2", "omega2", output="omega4"),
-)  # fmt: skip
+)

@@ -1,4 +1,5 @@
-"""Epicyclic train: speeds by Willis' formula, with the ring, the sun or the carrier fixed, and the torques."""
+"""Epicyclic train: speeds by Willis' formula, with the ring, the sun or the carrier fixed, and the
+torques."""
 
 from coursework.degrees import polar
 from coursework.figures import Figure, circle, ground_pivot, line, pin, wheel
@@ -43,7 +44,9 @@ EXERCISE = Exercise(
     given={
         "z1": drawn(18, 48),
         "z2": drawn(15, 36),
-        "mode": chosen("ring", "sun", "carrier", shown=("omega_b", "omega24", "omega2", "Gamma_out", "Gamma_fix")),
+        "mode": chosen(
+            "ring", "sun", "carrier", shown=("omega_b", "omega24", "omega2", "Gamma_out", "Gamma_fix")
+        ),
         "omega_a": drawn(-150, 150, step=2, unit="rad/s"),
         "Gamma_in": drawn(5, 60, step=1, unit="N*m"),
     },
@@ -55,8 +58,15 @@ EXERCISE = Exercise(
         *(
             detectable(mistake, "omega_b", "omega24", "omega2", "Gamma_out", "Gamma_fix")
             for mistake in (
-                "ring_as_far_as_a_planet", "planet_on_both_sides_left_out", "ratio_positive", "another_member_fixed", "carrier_left_out_of_the_planet",
-                "sun_seen_from_the_frame", "torque_upside_down", "held_without_the_load", "torques_added",
+                "ring_as_far_as_a_planet",
+                "planet_on_both_sides_left_out",
+                "ratio_positive",
+                "another_member_fixed",
+                "carrier_left_out_of_the_planet",
+                "sun_seen_from_the_frame",
+                "torque_upside_down",
+                "held_without_the_load",
+                "torques_added",
             )
         ),
     ),
@@ -79,4 +89,4 @@ EXERCISE = Exercise(
         "Gamma_out": r"\Gamma_b",
         "Gamma_fix": r"\Gamma_c",
     },
-)  # fmt: skip
+)

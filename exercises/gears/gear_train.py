@@ -63,8 +63,13 @@ EXERCISE = Exercise(
         *(
             detectable(mistake, "r", "omega2", "omega5", "a", "v", "Gamma5")
             for mistake in (
-                "idler_for_the_wheel_it_drives", "all_in_a_row", "idler_by_the_wheel_after_it",
-                "other_kind_of_teeth", "diameter_for_radius", "torque_as_the_speed", "efficiency_of_one_mesh",
+                "idler_for_the_wheel_it_drives",
+                "all_in_a_row",
+                "idler_by_the_wheel_after_it",
+                "other_kind_of_teeth",
+                "diameter_for_radius",
+                "torque_as_the_speed",
+                "efficiency_of_one_mesh",
                 "torque_without_losses",
             )
         ),
@@ -80,4 +85,4 @@ EXERCISE = Exercise(
     ),
     figure=figure,
     symbols={"Gamma1": r"\Gamma_1", "Gamma5": r"\Gamma_5", "eta": r"\eta"},
-)  # fmt: skip
+)

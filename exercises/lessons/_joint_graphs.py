@@ -16,7 +16,8 @@ def bodies(places, *, frame="0"):
 
 
 def joint(p, q, label=None, bend=0.0):
-    """A line between the rims of two bodies; ``bend`` is how far its middle stands off, mm, to the left of p to q."""
+    """A line between the rims of two bodies; ``bend`` is how far its middle stands off, mm, to the left of p
+    to q."""
     way = (q - p) / abs(q - p)
     if not bend:
         return [line(p + 1.2 * RADIUS * way, q - 1.2 * RADIUS * way, thin=False, label=label)]

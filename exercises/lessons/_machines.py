@@ -1,4 +1,5 @@
-"""Common base of the lessons on real machines: mechanisms solved by their files, drawn parts, and a machine beside its scheme."""
+"""Common base of the lessons on real machines: mechanisms solved by their files, drawn parts, and a machine
+beside its scheme."""
 
 from dataclasses import fields, replace
 from functools import cache
@@ -48,7 +49,8 @@ def path(name, point, **changed):
 
 
 def scheme(name, **changed):
-    """The elements of a mechanism's figure, and its points by letter; at a dead point too, where no variant asks anything."""
+    """The elements of a mechanism's figure, and its points by letter; at a dead point too, where no variant
+    asks anything."""
     spec = machine(name).spec
     elements = unnamed(call_on_quantities(spec.figure, data(name, **changed), tuple(spec.helpers)).elements)
     elements = [
@@ -70,7 +72,8 @@ def to_and_fro(low, high):
 
 
 def counted(name):
-    """The number of moving bodies of a mechanism and that of its lower pairs, a jack taken for two bodies and a slide."""
+    """The number of moving bodies of a mechanism and that of its lower pairs, a jack taken for two bodies and
+    a slide."""
     linkage = compiled(LINKAGES / "exercises" / f"{name}.toml").linkage
     bodies = len(linkage.bodies) + bool(linkage.drive.rod)
     return bodies, (3 * bodies - linkage.mobility) // 2
@@ -180,7 +183,8 @@ def rows_of(drawings, across, room):
 
 
 def beside(real, elements, *, upright=False, gap=0.06, paper_mm=(165, 100)):
-    """A drawn machine and its scheme, one beside the other, or one under the other: ``(a)`` and ``(b)``, to one scale."""
+    """A drawn machine and its scheme, one beside the other, or one under the other: ``(a)`` and ``(b)``, to
+    one scale."""
     low, high = _extent(real)
     low_2, high_2 = _extent(elements)
     room = gap * max((high - low).real, (high - low).imag)

@@ -1,4 +1,5 @@
-"""Figures of the lesson on accelerations: the four terms, polygons, and where Coriolis comes from and points to."""
+"""Figures of the lesson on accelerations: the four terms, polygons, and where Coriolis comes from and points
+to."""
 
 import numpy as np
 
@@ -198,7 +199,8 @@ def image_of_a_link():
 
 
 def where_coriolis_comes_from():
-    """A guide a moment apart. On the left the sliding velocity has turned; on the right the radius has grown."""
+    """A guide a moment apart. On the left the sliding velocity has turned; on the right the radius has
+    grown."""
     return Figure(*_turned(0j), *_carried(175 + 0j), paper_mm=(130, 64))
 
 
@@ -240,7 +242,8 @@ def _carried(at):
 
 
 def bead_on_a_turning_bar():
-    """A bar at a constant rate, a bead that slides out and in again: its sliding velocity and its Coriolis acceleration."""
+    """A bar at a constant rate, a bead that slides out and in again: its sliding velocity and its Coriolis
+    acceleration."""
     return [_bead(turned) for turned in np.arange(0.0, 360.0, 10.0)]
 
 
@@ -296,7 +299,8 @@ def _slotted():
 
 
 def slotted_mechanism():
-    """The mechanism, the sliding velocity of A and its Coriolis acceleration, which is that velocity turned."""
+    """The mechanism, the sliding velocity of A and its Coriolis acceleration, which is that velocity
+    turned."""
     O2, A, a, k, *_ = _slotted()
     u = _unit(A)
     return Figure(

@@ -24,7 +24,8 @@ def _linkage(at, theta2):
 
 
 def change_point():
-    """The linkage of the lesson at 120 degrees, and just beside the place where all four bars lie on one line."""
+    """The linkage of the lesson at 120 degrees, and just beside the place where all four bars lie on one
+    line."""
     return Figure(*_linkage(0j, 120.0), *_linkage(complex(96), 176.0), paper_mm=(140, 48))
 
 

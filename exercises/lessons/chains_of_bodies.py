@@ -69,7 +69,8 @@ def wrench_at_two_points():
 
 
 def _gallery(letters, *names, plan=()):
-    """Symbols in a row, the letter of each below it, and below that its symbol in a plane where there is one."""
+    """Symbols in a row, the letter of each below it, and below that its symbol in a plane where there is
+    one."""
     found = []
     for number, (letter, name) in enumerate(zip(letters, names, strict=True)):
         alone = in_perspective([{"joint": name, "along": "z", "point": (0.0, 0.0, 0.0)}])

@@ -1,4 +1,5 @@
-"""Figures of the lesson on forces: a rocker under three forces, a four-bar linkage taken apart, inertia of a slider-crank."""
+"""Figures of the lesson on forces: a rocker under three forces, a four-bar linkage taken apart, inertia of a
+slider-crank."""
 
 import numpy as np
 
@@ -26,7 +27,8 @@ def _pins():
 
 
 def three_forces():
-    """The rocker: the load at P, the force of the coupler at B along the coupler, that of the frame at C; all meet in K."""
+    """The rocker: the load at P, the force of the coupler at B along the coupler, that of the frame at C; all
+    meet in K."""
     A, B, C = _pins()
     P, load = C + 0.55 * (B - C), 40 * polar(1, -20)
     along = (B - A) / abs(B - A)
@@ -50,7 +52,8 @@ def three_forces():
 
 
 def taken_apart():
-    """Crank, coupler and rocker side by side: the crank pulls the rocker, the force S on each end and against it."""
+    """Crank, coupler and rocker side by side: the crank pulls the rocker, the force S on each end and against
+    it."""
     A, B, C = _pins()
     along = (B - A) / abs(B - A)
     S, gap = 40 * along, 95 * along

@@ -1,4 +1,5 @@
-"""Figures of the lesson on Grashof's rule and coupler curves: the four types, why the rule holds, what curves do."""
+"""Figures of the lesson on Grashof's rule and coupler curves: the four types, why the rule holds, what curves
+do."""
 
 from itertools import pairwise
 
@@ -114,7 +115,8 @@ def four_types():
 
 FAR = (0.0, 130.0, 310.0, 460.0)  #: where the four types stand, from left to right
 
-#: Frame, input, coupler, output; where the input is drawn. The shortest bar beside the frame, beside it, as it, opposite it.
+#: Frame, input, coupler, output; where the input is drawn. The shortest bar beside the frame, beside it, as
+#: it, opposite it.
 CASES = {
     "crank_rocker": ((70.0, 26.0, 60.0, 46.0), 70.0),
     "rocker_crank": ((60.0, 46.0, 70.0, 26.0), 68.0),
@@ -304,8 +306,9 @@ def _plated(O, A, B, C, P, plate):
 # ------------------------------------------------------------------ what coupler curves do
 
 
-# The claw: bars r1 to r4, AP, beta; turned so that the straight side of its curve is upright, and mirrored so that
-# it is passed downwards. In and out of the film between these angles of the crank, where the film goes with it.
+# The claw: bars r1 to r4, AP, beta; turned so that the straight side of its curve is upright, and mirrored so
+# that it is passed downwards. In and out of the film between these angles of the crank, where the film goes
+# with it.
 CLAW = ((35.0, 11.0, 25.0, 22.5), 22.0, 70.0)
 CLAW_IN, CLAW_OUT, UPRIGHT = 103.0, 258.0, complex(polar(1.0, -154.0))
 FRONT, FILM = 9.0, 22.0  #: how far from its edge the film stands as seen from the front, and how wide, mm
@@ -347,14 +350,15 @@ def _film_at(theta2):
 
 
 def _front(left, holes, window):
-    """The film seen from the front: its outline, the perforations that the claw enters, and the pictures between them."""
+    """The film seen from the front: its outline, the perforations that the claw enters, and the pictures
+    between them."""
 
     def box(start, end, low, high):
         low, high = (min(max(y, window[0]), window[1]) for y in (low, high))
         start, end = (start, end) if low < high else (0.0, 0.0)  # out of sight, on the outline
-        return closed([
-            complex(left + x, y) for x, y in ((start, low), (end, low), (end, high), (start, high))
-        ])  # fmt: skip
+        return closed(
+            [complex(left + x, y) for x, y in ((start, low), (end, low), (end, high), (start, high))]
+        )
 
     perforations = [box(1.2, 3.6, y - 1.4, y + 1.4) for y in holes]
     pictures = [box(5.0, FILM - 2.0, lower + 1.4, upper - 1.4) for lower, upper in pairwise(holes)]
@@ -441,7 +445,8 @@ STRAIGHT = (
 
 
 def straight_line():
-    """Hoecken's linkage: for half a turn of the crank, P goes along a line, nearly, and nearly at one speed."""
+    """Hoecken's linkage: for half a turn of the crank, P goes along a line, nearly, and nearly at one
+    speed."""
     bars, AP, beta = STRAIGHT
     curve = closed(_coupler_point(bars, AP, beta, FINE))
     found = []

@@ -1,4 +1,5 @@
-"""Figures of the lesson on instant centres: a body that turns about a point, three bodies, linkages, a ladder."""
+"""Figures of the lesson on instant centres: a body that turns about a point, three bodies, linkages, a
+ladder."""
 
 import numpy as np
 

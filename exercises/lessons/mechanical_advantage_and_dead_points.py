@@ -1,4 +1,5 @@
-"""Figures of the lesson on mechanical advantage: forces and velocities, transmission angle, dead points, toggle, jack."""
+"""Figures of the lesson on mechanical advantage: forces and velocities, transmission angle, dead points,
+toggle, jack."""
 
 import numpy as np
 
@@ -29,7 +30,8 @@ def _four_bar(theta2):
 
 
 def powers():
-    """The force on A along its velocity, that on B against its own, and the two velocities' projections on AB."""
+    """The force on A along its velocity, that on B against its own, and the two velocities' projections on
+    AB."""
     A, B, C = _four_bar(60)
     crank, rocker, along = A, B - C, (B - A) / abs(B - A)
     omega4 = cross(crank, along) / cross(rocker, along)

@@ -1,4 +1,5 @@
-"""Figures of the lesson on mobility: joint graphs, cycles, Assour groups and the mechanisms that they make."""
+"""Figures of the lesson on mobility: joint graphs, cycles, Assour groups and the mechanisms that they
+make."""
 
 import numpy as np
 
@@ -56,8 +57,14 @@ def slider_crank_graph():
 
 _PLACES_13 = {1: 0 - 4j, 2: -28 + 10j, 3: -20 + 34j, 4: 0 + 22j, 5: 20 + 34j, 6: 28 + 10j}
 _JOINTS_13 = [
-    ((1, 2), "O"), ((2, 3), "A"), ((3, 4), "B"), ((1, 4), "C"), ((4, 5), "D"), ((5, 6), "E"), ((1, 6), "F"),
-]  # fmt: skip
+    ((1, 2), "O"),
+    ((2, 3), "A"),
+    ((3, 4), "B"),
+    ((1, 4), "C"),
+    ((4, 5), "D"),
+    ((5, 6), "E"),
+    ((1, 6), "F"),
+]
 
 
 def figure_13():
@@ -66,12 +73,27 @@ def figure_13():
 
 
 _PLACES_14 = {
-    1: 0 - 8j, 2: -34 + 0j, 3: -24 + 26j, 4: -8 + 14j, 5: 24 + 20j, 6: 2 + 38j, 7: 46 + 20j, 8: 36 - 4j,
-}  # fmt: skip
+    1: 0 - 8j,
+    2: -34 + 0j,
+    3: -24 + 26j,
+    4: -8 + 14j,
+    5: 24 + 20j,
+    6: 2 + 38j,
+    7: 46 + 20j,
+    8: 36 - 4j,
+}
 _JOINTS_14 = [
-    ((1, 2), "O"), ((2, 3), "A"), ((3, 4), "B"), ((1, 4), "C"), ((3, 6), "E"), ((5, 6), "E'"), ((1, 5), "D"),
-    ((5, 7), "F"), ((7, 8), "G"), ((1, 8), "G'"),
-]  # fmt: skip
+    ((1, 2), "O"),
+    ((2, 3), "A"),
+    ((3, 4), "B"),
+    ((1, 4), "C"),
+    ((3, 6), "E"),
+    ((5, 6), "E'"),
+    ((1, 5), "D"),
+    ((5, 7), "F"),
+    ((7, 8), "G"),
+    ((1, 8), "G'"),
+]
 
 
 def figure_14():
@@ -85,7 +107,8 @@ def figure_14_graph():
 
 
 def spanning_tree():
-    """The same graph: a tree that ties all bodies to the frame, and the three edges that close a cycle, dashed."""
+    """The same graph: a tree that ties all bodies to the frame, and the three edges that close a cycle,
+    dashed."""
     closing = ((3, 4), (5, 6), (1, 8))
     kept = [(bodies, "") for bodies, _ in _JOINTS_14 if bodies not in closing]
     dashed = []
@@ -165,9 +188,15 @@ def taken_apart():
     """Figure 7: the whole, the driver with the frame, the group that is left."""
     O, A, B, C = _P.values()
     whole = [
-        link(O, A, label="2"), link(A, B, label="3"), link(C, B, label="4"),
-        ground_pivot(O, "O"), ground_pivot(C, "C"), pin(A, "A"), pin(B, "B"), rotation_arrow(O, 8, 95, 175),
-    ]  # fmt: skip
+        link(O, A, label="2"),
+        link(A, B, label="3"),
+        link(C, B, label="4"),
+        ground_pivot(O, "O"),
+        ground_pivot(C, "C"),
+        pin(A, "A"),
+        pin(B, "B"),
+        rotation_arrow(O, 8, 95, 175),
+    ]
     driver = [link(O, A, label="2"), ground_pivot(O, "O"), pin(A, "A"), rotation_arrow(O, 8, 95, 175)]
     dyad = [
         link(A, B, label="3"),
@@ -177,9 +206,14 @@ def taken_apart():
         pin(B, "B"),
     ]
     return Figure(
-        *moved(whole, 0j), *moved(driver, 98), *moved(dyad, 118),
-        note(33 - 17j, "(a)"), note(104 - 17j, "(b)"), note(158 - 17j, "(c)"), paper_mm=(158, 62),
-    )  # fmt: skip
+        *moved(whole, 0j),
+        *moved(driver, 98),
+        *moved(dyad, 118),
+        note(33 - 17j, "(a)"),
+        note(104 - 17j, "(b)"),
+        note(158 - 17j, "(c)"),
+        paper_mm=(158, 62),
+    )
 
 
 def dyads():
@@ -247,10 +281,14 @@ def class_one():
         rotation_arrow(18 + 18j, 18, 40, 130),
     ]
     press = [
-        rail(10 + 30j, 10 + 2j), rail(10 + 2j, 26 + 2j), rail(26 + 2j, 26 + 30j),
-        link(18 + 19j, 18 + 46j, label="2"), link(6 + 46j, 30 + 46j), _piston(18 + 16j, 19, 6),
+        rail(10 + 30j, 10 + 2j),
+        rail(10 + 2j, 26 + 2j),
+        rail(26 + 2j, 26 + 30j),
+        link(18 + 19j, 18 + 46j, label="2"),
+        link(6 + 46j, 30 + 46j),
+        _piston(18 + 16j, 19, 6),
         vector(18 + 3j, 8j, "p"),
-    ]  # fmt: skip
+    ]
     return Figure(
         *moved(motor, 0j), *moved(press, 64), note(18 - 14j, "(a)"), note(82 - 14j, "(b)"), paper_mm=(110, 70)
     )
@@ -286,9 +324,17 @@ def class_three():
     """The shaper: one group of four bodies about a plate of three joints."""
     A, B, C, D, E = 8 + 18j, 38 + 30j, 48 + 8j, 28 - 6j, 82 + 0j
     group = [
-        link(B, C, E, label="4"), link(A, B, label="3"), link(D, C, label="5"), rail(E - 9, E + 9), slider(E, 0, "6"),
-        ground_pivot(A, "A"), ground_pivot(D, "D"), pin(B, "B"), pin(C, "C"), pin(E, "E"),
-    ]  # fmt: skip
+        link(B, C, E, label="4"),
+        link(A, B, label="3"),
+        link(D, C, label="5"),
+        rail(E - 9, E + 9),
+        slider(E, 0, "6"),
+        ground_pivot(A, "A"),
+        ground_pivot(D, "D"),
+        pin(B, "B"),
+        pin(C, "C"),
+        pin(E, "E"),
+    ]
     return _parted("figure_8c_shaper", group, 102, 12)
 
 
@@ -296,9 +342,17 @@ def class_four():
     """One group of four bodies in a ring of four sides."""
     A, B, C, D, E, F = -6 + 18j, 14 + 42j, 62 + 44j, 58 + 20j, 26 + 20j, 78 + 0j
     group = [
-        link(A, B, E, label="3"), link(C, D, F, label="5"), link(B, C, label="4"), link(E, D, label="6"),
-        ground_pivot(A, "A"), ground_pivot(F, "F"), pin(B, "B"), pin(C, "C"), pin(D, "D"), pin(E, "E"),
-    ]  # fmt: skip
+        link(A, B, E, label="3"),
+        link(C, D, F, label="5"),
+        link(B, C, label="4"),
+        link(E, D, label="6"),
+        ground_pivot(A, "A"),
+        ground_pivot(F, "F"),
+        pin(B, "B"),
+        pin(C, "C"),
+        pin(D, "D"),
+        pin(E, "E"),
+    ]
     return _parted("figure_8d", group, 104, 8)
 
 
@@ -310,9 +364,15 @@ def shaper_other_driver():
 # ------------------------------------------------------------------ Figure 14 taken apart
 
 _Q = {
-    "O": 0j, "A": -12 + 18j, "B": 26 + 26j, "C": 34 + 0j, "E": 14 + 50j, "D": -22 + 40j, "F": 59 + 62.5j,
+    "O": 0j,
+    "A": -12 + 18j,
+    "B": 26 + 26j,
+    "C": 34 + 0j,
+    "E": 14 + 50j,
+    "D": -22 + 40j,
+    "F": 59 + 62.5j,
     "G": 92 + 54j,
-}  # fmt: skip
+}
 
 
 def figure_14_groups():
@@ -321,19 +381,34 @@ def figure_14_groups():
     way = (F - D) / abs(F - D)
     driver = [link(O, A, label="2"), ground_pivot(O, "O"), pin(A, "A"), rotation_arrow(O, 8, 20, 90)]
     first = [
-        link(A, B, E, label="3"), link(C, B, label="4"), ground_pivot(A, "A"), ground_pivot(C, "C"), pin(B, "B"),
+        link(A, B, E, label="3"),
+        link(C, B, label="4"),
+        ground_pivot(A, "A"),
+        ground_pivot(C, "C"),
+        pin(B, "B"),
         pin(E, "E"),
-    ]  # fmt: skip
+    ]
     second = [
-        slot_link(E - 9 * way, E + 9 * way), link(D, E - 9 * way, label="5"), link(E + 9 * way, F),
-        slider(E, float(angle(way)), "6"), ground_pivot(D, "D"), ground_pivot(E, "E"), pin(F, "F"),
-    ]  # fmt: skip
+        slot_link(E - 9 * way, E + 9 * way),
+        link(D, E - 9 * way, label="5"),
+        link(E + 9 * way, F),
+        slider(E, float(angle(way)), "6"),
+        ground_pivot(D, "D"),
+        ground_pivot(E, "E"),
+        pin(F, "F"),
+    ]
     third = [link(F, G, label="7"), rail(G - 9, G + 9), slider(G, 0, "8"), ground_pivot(F, "F"), pin(G, "G")]
     return Figure(
-        *moved(driver, 14), *moved(first, 52), *moved(second, 132 - 30j), *moved(third, 172 - 34j),
-        note(8 - 18j, "(a)"), note(66 - 18j, "(b)"), note(152 - 18j, "(c)"), note(248 - 18j, "(d)"),
+        *moved(driver, 14),
+        *moved(first, 52),
+        *moved(second, 132 - 30j),
+        *moved(third, 172 - 34j),
+        note(8 - 18j, "(a)"),
+        note(66 - 18j, "(b)"),
+        note(152 - 18j, "(c)"),
+        note(248 - 18j, "(d)"),
         paper_mm=(158, 60),
-    )  # fmt: skip
+    )
 
 
 def figure_14_by_5():
@@ -341,10 +416,18 @@ def figure_14_by_5():
     O, A, B, C, E = (_Q[name] for name in "OABCE")
     way = (_Q["F"] - _Q["D"]) / abs(_Q["F"] - _Q["D"])
     return Figure(
-        link(A, B, E, label="3"), link(O, A, label="2"), link(C, B, label="4"),
-        line(E - 24 * way, E + 24 * way, dashed=True, label="5"), slider(E, float(angle(way)), "6"),
-        ground_pivot(O, "O"), ground_pivot(C, "C"), pin(A, "A"), pin(B, "B"), pin(E, "E"), paper_mm=(80, 75),
-    )  # fmt: skip
+        link(A, B, E, label="3"),
+        link(O, A, label="2"),
+        link(C, B, label="4"),
+        line(E - 24 * way, E + 24 * way, dashed=True, label="5"),
+        slider(E, float(angle(way)), "6"),
+        ground_pivot(O, "O"),
+        ground_pivot(C, "C"),
+        pin(A, "A"),
+        pin(B, "B"),
+        pin(E, "E"),
+        paper_mm=(80, 75),
+    )
 
 
 # ------------------------------------------------------------------ schemes to be counted

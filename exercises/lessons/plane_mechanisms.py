@@ -1,4 +1,5 @@
-"""Figures of the lesson on plane mechanisms: what they are, what they are made of, how one comes from another."""
+"""Figures of the lesson on plane mechanisms: what they are, what they are made of, how one comes from
+another."""
 
 import numpy as np
 
@@ -45,7 +46,8 @@ def _pins(theta2=THETA2, r1=R1, r2=R2, r3=R3, r4=R4):
 
 
 def parallel_planes():
-    """Three points of a four-bar linkage, each in its own plane, with its path; and the one drawing of them all."""
+    """Three points of a four-bar linkage, each in its own plane, with its path; and the one drawing of them
+    all."""
     O, A, B, C = _pins()
     P = A + (B - A) * (0.5 + 0.5j)
     paths = [

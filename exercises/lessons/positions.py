@@ -141,9 +141,11 @@ def _bands(at, mu):
 def circles_that_do_not_meet():
     """Too far apart; one inside the other; touching."""
     return Figure(
-        *_pair(0j, 100.0, 40.0, 42.0), *_pair(245 + 0j, 30.0, 78.0, 36.0), *_pair(395 + 0j, 90.0, 50.0, 40.0),
+        *_pair(0j, 100.0, 40.0, 42.0),
+        *_pair(245 + 0j, 30.0, 78.0, 36.0),
+        *_pair(395 + 0j, 90.0, 50.0, 40.0),
         paper_mm=THREE_PANELS,
-    )  # fmt: skip
+    )
 
 
 def _pair(at, AC, r3, r4):

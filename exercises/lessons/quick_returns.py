@@ -1,4 +1,5 @@
-"""Figures of the lesson on quick returns: the arcs of four mechanisms, then a crank and slotted lever drawn to scale."""
+"""Figures of the lesson on quick returns: the arcs of four mechanisms, then a crank and slotted lever drawn
+to scale."""
 
 from typing import Any, NamedTuple
 
@@ -123,7 +124,8 @@ def shaper_arcs():
 
 
 def whitworth_arcs():
-    """A guide that turns fully, level at both ends of the stroke: a chord through O4 cuts the circle of the crank."""
+    """A guide that turns fully, level at both ends of the stroke: a chord through O4 cuts the circle of the
+    crank."""
     r1, r2, r4 = 50.0, 120.0, 90.0
     O2, reach = 1j * r1, (r2**2 - r1**2) ** 0.5
     right, left, tilt = complex(reach), complex(-reach), asin(r1 / r2)
@@ -145,14 +147,16 @@ def whitworth_arcs():
     )
 
 
-# The crank and slotted lever of the exercise: mm, rad/s. OC and the height of the ram's line are the lesson's own.
+# The crank and slotted lever of the exercise: mm, rad/s. OC and the height of the ram's line are the lesson's
+# own.
 CRANK, LEVER, ROD, OMEGA, OC, H = 105.0, 420.0, 165.0, 9.42, 210.0, 450.0
 THETA = 20.0  #: the crank 110 degrees from CO
 KV, KA = 20.0, 100.0
 
 
 class _Pose(NamedTuple):
-    """Vectors CP, OP, OD, DE; the rates of the lever and the rod, the sliding; the same of the second order."""
+    """Vectors CP, OP, OD, DE; the rates of the lever and the rod, the sliding; the same of the second
+    order."""
 
     crank: Any
     arm: Any

@@ -1,4 +1,5 @@
-"""Figures and numbers of the lesson on levers that swing: two wipers, a tipper, a crane, each beside its scheme."""
+"""Figures and numbers of the lesson on levers that swing: two wipers, a tipper, a crane, each beside its
+scheme."""
 
 import numpy as np
 
@@ -180,7 +181,8 @@ CRANE_AT = 66.0
 
 
 def level_luffing_crane():
-    """A harbour crane whose hook stays at one height while the jib luffs, and the scheme with the path of its head."""
+    """A harbour crane whose hook stays at one height while the jib luffs, and the scheme with the path of its
+    head."""
     elements, z = scheme("level_luffing_crane", theta2=CRANE_AT)
     O, A, B, C, P = (z[n] for n in "OABCP")
 

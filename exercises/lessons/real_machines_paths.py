@@ -1,4 +1,5 @@
-"""Figures and numbers of the lesson on points that draw lines: a claw, a packing line, an inversor, a walking toy, each beside its scheme."""
+"""Figures and numbers of the lesson on points that draw lines: a claw, a packing line, an inversor, a walking
+toy, each beside its scheme."""
 
 import numpy as np
 
@@ -273,13 +274,14 @@ def _pump():
     sizes = data("peaucellier")
     swung = np.linspace(-45.0, 45.0, 361)
     places = path("peaucellier", "P", theta2=swung)
+    rods = solved("peaucellier", ("theta7", "theta8"), theta2=swung)
     return {
         **given("pump", "peaucellier", "r2", "a", "b"),
         "pump_product": f"{(sizes['a'] ** 2 - sizes['b'] ** 2) / 1e6:.3f}",
         "pump_line": f"{places.real.mean():.0f}",
         "pump_stroke": f"{np.ptp(places.imag):.0f}",
         "pump_swing": f"{np.ptp(swung):.0f}",
-        "pump_least": f"{crossing(*solved('peaucellier', ('theta7', 'theta8'), theta2=swung).values()).min():.0f}",
+        "pump_least": f"{crossing(*rods.values()).min():.0f}",
     }
 
 

@@ -1,4 +1,5 @@
-"""Figures and numbers of the lesson on strokes and pauses: a shaper, a sewing machine, an engine, a projector, each beside its scheme."""
+"""Figures and numbers of the lesson on strokes and pauses: a shaper, a sewing machine, an engine, a
+projector, each beside its scheme."""
 
 import numpy as np
 
@@ -35,7 +36,8 @@ SHAPER_AT = 35.0
 
 
 def shaper():
-    """A shaper, its cover taken off: bull gear with crank pin, slotted lever, link, ram with its tool, table with the work."""
+    """A shaper, its cover taken off: bull gear with crank pin, slotted lever, link, ram with its tool, table
+    with the work."""
     elements, z = scheme("shaper", theta2=SHAPER_AT, **SHAPER)
     O, A, C, D, E = (z[n] for n in "OACDE")
     up = (D - C) / abs(D - C)
@@ -84,7 +86,8 @@ POINT = 68.0  #: from the pin of the needle bar to the point of the needle, mm
 
 
 def needle_bar():
-    """The head of a sewing machine seen from its end, its cover taken off: needle bar and thread take-up on one crank."""
+    """The head of a sewing machine seen from its end, its cover taken off: needle bar and thread take-up on
+    one crank."""
     elements, z = scheme("needle_bar", theta2=SEWING_AT)
     O, A, B, D, F, G, P = (z[n] for n in "OABDFGP")
     tip = B - 1j * POINT
@@ -149,7 +152,8 @@ ENGINE_AT = 75.0
 
 
 def atkinson_engine():
-    """Atkinson's engine in section: piston and cylinder, the swinging link, the long rod and the crank with its flywheel."""
+    """Atkinson's engine in section: piston and cylinder, the swinging link, the long rod and the crank with
+    its flywheel."""
     elements, z = scheme("atkinson_engine", theta2=ENGINE_AT)
     O, A, B, C, E = (z[n] for n in "OABCE")
     level, head = E.imag, float(solved("atkinson_engine", "x", theta2=FINE).max()) + 58
@@ -199,7 +203,8 @@ TEETH, PITCH = 16, 4.75  #: of the sprocket, and the pitch of the perforations, 
 
 
 def maltese_cross():
-    """The drive of a film projector: driver with pin and locking disc, cross, and the sprocket that pulls the film."""
+    """The drive of a film projector: driver with pin and locking disc, cross, and the sprocket that pulls the
+    film."""
     elements, z = scheme("maltese_cross", theta2=CROSS_AT)
     O, A, C = (z[n] for n in "OAC")
     turned = float(np.degrees(np.angle(A - C)))

@@ -284,10 +284,19 @@ def _havens(b=B):
     v40_B = 1j * omega4 * (abs(arm) + b) * along
     slide = v10 - v40
     return {
-        "O4": complex(-D), "A1": A1, "B2": A1 + b * along, "I": R3 * crank, "along": along, "crank": crank,
-        "v10": v10, "v40": v40, "v14": slide, "v40_B": v40_B, "v20": slide + v40_B,
+        "O4": complex(-D),
+        "A1": A1,
+        "B2": A1 + b * along,
+        "I": R3 * crank,
+        "along": along,
+        "crank": crank,
+        "v10": v10,
+        "v40": v40,
+        "v14": slide,
+        "v40_B": v40_B,
+        "v20": slide + v40_B,
         "v30": v10 - 1j * omega4 * R2 * crank,
-    }  # fmt: skip
+    }
 
 
 def _havens_parts(at):

@@ -67,7 +67,8 @@ def two_loops_vectors():
 
 
 def _graph(places, joints):
-    """Bodies as circles, joints as lines between them; a body is told by its number, a joint by its letter."""
+    """Bodies as circles, joints as lines between them; a body is told by its number, a joint by its
+    letter."""
     radius = 4.5
 
     def side(one, other):

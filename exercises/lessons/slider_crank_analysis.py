@@ -1,4 +1,5 @@
-"""Figures of the lesson on the slider-crank: the mechanism, its loop, its polygons; then six bars with a slider."""
+"""Figures of the lesson on the slider-crank: the mechanism, its loop, its polygons; then six bars with a
+slider."""
 
 import numpy as np
 
@@ -220,7 +221,8 @@ def six_bar_accelerations():
 
 
 def curves_to_be_named():
-    """Position, velocity and acceleration of a piston over a turn of the crank, without names, each to its own scale."""
+    """Position, velocity and acceleration of a piston over a turn of the crank, without names, each to its
+    own scale."""
     turn = np.radians(np.arange(0.0, 361.0, 3.0))
     ratio = R3 / R2
     leaning = np.sqrt(ratio**2 - np.sin(turn) ** 2)

@@ -1,4 +1,5 @@
-"""Figures of the lesson on velocities: relative velocity, polygons and what they are images of, coincident points."""
+"""Figures of the lesson on velocities: relative velocity, polygons and what they are images of, coincident
+points."""
 
 import numpy as np
 
@@ -337,7 +338,8 @@ def coincident_points():
 
 
 def curved_slot():
-    """A pin in a slot bent to an arc: the sliding velocity lies along the tangent, square to the radius KA."""
+    """A pin in a slot bent to an arc: the sliding velocity lies along the tangent, square to the radius
+    KA."""
     O, K, rho = 0j, 70 - 52j, 110.0
     A = K + polar(rho, 96)
     bend = [
@@ -364,7 +366,8 @@ def curved_slot():
 
 
 def cam():
-    """A cam and a follower with a flat face: at the contact, the sliding velocity lies along the common tangent."""
+    """A cam and a follower with a flat face: at the contact, the sliding velocity lies along the common
+    tangent."""
     O, K, radius = 0j, polar(22.0, 30), 48.0
     I = K + 1j * radius
     face = I.imag

@@ -1,4 +1,5 @@
-"""A body that a jack tips: positions, rates and accelerations from the length of the jack, which is the input."""
+"""A body that a jack tips: positions, rates and accelerations from the length of the jack, which is the
+input."""
 
 import numpy as np
 

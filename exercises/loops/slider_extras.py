@@ -8,8 +8,17 @@ from coursework.kinematics.dyads import rrp, rrr, side_of
 from coursework.model import Driver, Exercise, Part, chosen, drawn, in_turn, loop_equations
 
 SYMBOLS_OF_THE_LOOPS = (
-    "r1", "r2", "r3", "r4", "r5", "r6", "theta2", "theta3", "theta4", "theta5",
-)  # fmt: skip
+    "r1",
+    "r2",
+    "r3",
+    "r4",
+    "r5",
+    "r6",
+    "theta2",
+    "theta3",
+    "theta4",
+    "theta5",
+)
 
 
 def pin_A(r1, r2, theta2):

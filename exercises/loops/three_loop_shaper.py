@@ -8,9 +8,26 @@ from coursework.kinematics.dyads import rrp, rrr, side_of
 from coursework.model import Driver, Exercise, Part, chosen, detectable, drawn, in_turn, loop_equations
 
 SYMBOLS_OF_THE_LOOPS = (
-    "xC", "yC", "xD", "yD", "r2", "r3", "r4", "r5", "r6", "beta", "r7", "d3",
-    "theta2", "theta3", "theta4", "theta5", "d5", "theta7", "x8",
-)  # fmt: skip
+    "xC",
+    "yC",
+    "xD",
+    "yD",
+    "r2",
+    "r3",
+    "r4",
+    "r5",
+    "r6",
+    "beta",
+    "r7",
+    "d3",
+    "theta2",
+    "theta3",
+    "theta4",
+    "theta5",
+    "d5",
+    "theta7",
+    "x8",
+)
 LENGTHS = ("r2", "r3", "r4", "r5", "r6", "r7", "d3", "d5", "x8")
 TURN = np.arange(0.0, 360.0, 24.0)  #: where the whole turn is looked at
 

@@ -1,4 +1,5 @@
-"""Toggle press: positions, mechanical advantage and forces shortly before the two bars of the toggle are in line."""
+"""Toggle press: positions, mechanical advantage and forces shortly before the two bars of the toggle are in
+line."""
 
 import numpy as np
 

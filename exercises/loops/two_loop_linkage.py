@@ -8,9 +8,23 @@ from coursework.kinematics.dyads import rrr, side_of
 from coursework.model import Driver, Exercise, Part, chosen, detectable, drawn, in_turn, loop_equations
 
 SYMBOLS_OF_THE_LOOPS = (
-    "xC", "yC", "xF", "yF", "r2", "r3", "r4", "r5", "beta", "r6", "r7",
-    "theta2", "theta3", "theta4", "theta6", "theta7",
-)  # fmt: skip
+    "xC",
+    "yC",
+    "xF",
+    "yF",
+    "r2",
+    "r3",
+    "r4",
+    "r5",
+    "beta",
+    "r6",
+    "r7",
+    "theta2",
+    "theta3",
+    "theta4",
+    "theta6",
+    "theta7",
+)
 LENGTHS = ("r2", "r3", "r4", "r5", "r6", "r7")
 
 

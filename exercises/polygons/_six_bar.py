@@ -1,4 +1,5 @@
-"""The six links of the supplementary exercise, for drawn polygons: the slider is C here, since p is the image of none."""
+"""The six links of the supplementary exercise, for drawn polygons: the slider is C here, since p is the image
+of none."""
 
 from coursework.figures import Figure, angle_mark, ground_pivot, line, link, pin, rail, slider
 from coursework.model import drawn

@@ -1,4 +1,5 @@
-"""Acceleration polygon of six links whose velocities are known: two bars that meet, then a rod and its slider."""
+"""Acceleration polygon of six links whose velocities are known: two bars that meet, then a rod and its
+slider."""
 
 import numpy as np
 

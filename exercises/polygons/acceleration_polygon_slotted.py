@@ -1,4 +1,5 @@
-"""Acceleration polygon of a slotted mechanism whose velocities are known: the Coriolis term and its side (Figure 25)."""
+"""Acceleration polygon of a slotted mechanism whose velocities are known: the Coriolis term and its side
+(Figure 25)."""
 
 from coursework.kinematics.angles import Degrees
 from coursework.kinematics.slotted_guide import SlottedGuidePose

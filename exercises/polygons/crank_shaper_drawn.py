@@ -1,4 +1,5 @@
-"""Crank and slotted lever, solved on paper: velocity and acceleration of the ram from two polygons (Figure 27's exercise)."""
+"""Crank and slotted lever, solved on paper: velocity and acceleration of the ram from two polygons (Figure
+27's exercise)."""
 
 from typing import Any, NamedTuple
 

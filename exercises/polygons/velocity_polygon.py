@@ -1,4 +1,5 @@
-"""Velocity polygon of a four-bar linkage: what is known, the drawing, and what is read off it (equation 12)."""
+"""Velocity polygon of a four-bar linkage: what is known, the drawing, and what is read off it (equation
+12)."""
 
 from coursework.model import Exercise
 

@@ -1,4 +1,5 @@
-"""Velocity polygon of six links: two bars that meet, then a rod and its slider (the supplementary exercise)."""
+"""Velocity polygon of six links: two bars that meet, then a rod and its slider (the supplementary
+exercise)."""
 
 import numpy as np
 
@@ -17,7 +18,8 @@ from ._six_bar import GIVEN, HELPERS, bars, crank_off_the_axes, figure, told_dir
 
 
 def crank_not_square_to_the_coupler(pin_A, pin_B, r1):
-    """Else who draws the velocity of A along the crank finds nothing that moves, and the drawing ends there."""
+    """Else who draws the velocity of A along the crank finds nothing that moves, and the drawing ends
+    there."""
     crank, coupler = pin_A - 1j * r1, pin_B - pin_A
     return abs(dot(crank, coupler)) > 0.1 * abs(crank) * abs(coupler)
 

@@ -1,4 +1,5 @@
-"""Velocity polygon of a slider-crank: what is known, the drawing, and what is read off it (Figures 20 and 21)."""
+"""Velocity polygon of a slider-crank: what is known, the drawing, and what is read off it (Figures 20 and
+21)."""
 
 from coursework.model import Exercise
 

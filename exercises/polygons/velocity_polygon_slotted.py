@@ -1,4 +1,5 @@
-"""Velocity polygon of a slotted mechanism: coincident points of crank and guide, and the sliding between them (Figure 24)."""
+"""Velocity polygon of a slotted mechanism: coincident points of crank and guide, and the sliding between them
+(Figure 24)."""
 
 from coursework.model import Exercise
 

@@ -177,8 +177,19 @@ def figure(A, B, C, r1, theta1, r2, omega2):
 
 
 SYMBOLS_OF_THE_LOOPS = (
-    "r1", "theta1", "r2", "theta2", "r3", "theta3", "r4", "theta4", "r5", "theta5", "xC", "h",
-)  # fmt: skip
+    "r1",
+    "theta1",
+    "r2",
+    "theta2",
+    "r3",
+    "theta3",
+    "r4",
+    "theta4",
+    "r5",
+    "theta5",
+    "xC",
+    "h",
+)
 RATES_OF_THE_LOOPS = ("omega2", "omega3", "omega4", "omega5", "v_C")
 
 EXERCISE = Exercise(

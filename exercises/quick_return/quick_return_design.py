@@ -1,4 +1,5 @@
-"""Slider-crank to be designed: find lengths that give a wanted stroke and time ratio (Figure 26 a, reversed)."""
+"""Slider-crank to be designed: find lengths that give a wanted stroke and time ratio (Figure 26 a,
+reversed)."""
 
 from coursework.degrees import asin, polar, sqrt, tan
 from coursework.figures import (

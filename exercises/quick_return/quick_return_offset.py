@@ -1,4 +1,5 @@
-"""Quick return of a slider-crank whose piston is out of line with the crank (Figure 26 a, equations 22, 23)."""
+"""Quick return of a slider-crank whose piston is out of line with the crank (Figure 26 a, equations 22,
+23)."""
 
 from coursework.degrees import angle, polar, wrap
 from coursework.figures import (

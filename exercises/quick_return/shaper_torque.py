@@ -25,16 +25,17 @@ TOLD = 30  #: degrees between the bounds that the statement tells: the middle of
 
 
 def speeds(r1, r2, r4, r5, h):
-    """How far the ram goes to the left per radian of the crank, from a tenth of a degree before to a tenth after, at crank
-    angles along a first axis: every 5 degrees from -90 to 270, over the stroke that a radian has on average."""
+    """How far the ram goes to the left per radian of the crank, from a tenth of a degree before to a tenth
+    after, at crank angles along a first axis: every 5 degrees from -90 to 270, over the stroke that a radian
+    has on average."""
     theta = np.arange(-90.0, 271.0, STEP).reshape((-1,) + (1,) * np.ndim(r1))
     before, after = (C(P(arm(r1, r2, at), r4), r5, h + 0 * at).real for at in (theta - 0.1, theta + 0.1))
     return (before - after) / np.radians(0.2) * math.pi * r1 / (r4 * r2)
 
 
 def tells(r1, r2, r4, r5, h):
-    """Bounds within which the torque rises above its mean, and falls below it, as the ram goes to the left faster than on
-    average, or not."""
+    """Bounds within which the torque rises above its mean, and falls below it, as the ram goes to the left
+    faster than on average, or not."""
     above = speeds(r1, r2, r4, r5, h) > 1
     rise, fall = -90 + STEP * np.flatnonzero(above[1:] != above[:-1])
     return {"rise": _bounds(int(rise)), "fall": _bounds(int(fall))}

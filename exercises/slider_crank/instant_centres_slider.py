@@ -1,4 +1,5 @@
-"""Instant centres of a slider-crank: one of them is at infinity; piston, rod and a point of it by the others."""
+"""Instant centres of a slider-crank: one of them is at infinity; piston, rod and a point of it by the
+others."""
 
 from coursework.degrees import polar
 from coursework.figures import (
@@ -76,7 +77,12 @@ EXERCISE = Exercise(
         *(
             detectable(mistake, "y24", "v_B", "y13", "omega3", "v_M")
             for mistake in (
-                "heights_exchanged", "heights_from_A", "about_O", "speed_of_A", "about_A", "mean_of_the_ends",
+                "heights_exchanged",
+                "heights_from_A",
+                "about_O",
+                "speed_of_A",
+                "about_A",
+                "mean_of_the_ends",
             )
         ),
     ),
@@ -91,4 +97,4 @@ EXERCISE = Exercise(
     figure=figure,
     symbols={"y24": "y_{24}", "y13": "y_{13}", "v_B": "v_B", "v_M": "v_M"},
     driver=Driver("theta2", "omega2", output="v_B"),
-)  # fmt: skip
+)

@@ -1,4 +1,5 @@
-"""Shaking force of a slider-crank: two masses for the rod, primary and secondary force, and a counterweight."""
+"""Shaking force of a slider-crank: two masses for the rod, primary and secondary force, and a
+counterweight."""
 
 from coursework.degrees import polar
 from coursework.figures import Figure, angle_mark, circle, ground_pivot, line, link, pin, point, rail, slider
@@ -70,8 +71,14 @@ EXERCISE = Exercise(
         *map(
             _visible,
             (
-                "rod_shared_the_other_way", "rod_left_out", "single_angle", "obliquity_forgotten",
-                "rotating_masses_only", "all_masses", "secondary_left_out", "counterweight_left_out",
+                "rod_shared_the_other_way",
+                "rod_left_out",
+                "single_angle",
+                "obliquity_forgotten",
+                "rotating_masses_only",
+                "all_masses",
+                "secondary_left_out",
+                "counterweight_left_out",
             ),
         ),
     ),
@@ -86,4 +93,4 @@ EXERCISE = Exercise(
     ),
     symbols={"mA": "m_A", "mB": "m_B", "mc": "m_c", "rc": "r_c", "F1": "F_1", "F2": "F_2"},
     figure=figure,
-)  # fmt: skip
+)

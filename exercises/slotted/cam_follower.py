@@ -1,4 +1,5 @@
-"""Cam with a roller follower: the motion by one of five laws, the pressure angle, the curvature and the profile."""
+"""Cam with a roller follower: the motion by one of five laws, the pressure angle, the curvature and the
+profile."""
 
 import numpy as np
 
@@ -139,8 +140,12 @@ EXERCISE = Exercise(
         *(
             detectable(mistake, "s", "v", "a", "phi", "rho", "rho_c")
             for mistake in (
-                "return_counted_from_its_beginning", "offset_on_the_other_side", "offset_left_out_of_the_angle",
-                "lift_left_out_of_the_height", "radius_of_a_flat_face", "roller_added",
+                "return_counted_from_its_beginning",
+                "offset_on_the_other_side",
+                "offset_left_out_of_the_angle",
+                "lift_left_out_of_the_height",
+                "radius_of_a_flat_face",
+                "roller_added",
             )
         ),
     ),
@@ -169,4 +174,4 @@ EXERCISE = Exercise(
         "K": r"\overrightarrow{OK}",
     },
     driver=Driver("theta", "omega", output="v"),
-)  # fmt: skip
+)

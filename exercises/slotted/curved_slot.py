@@ -1,4 +1,5 @@
-"""A crank pin in the curved slot of a lever: the relative motion along its tangent, and all its accelerations."""
+"""A crank pin in the curved slot of a lever: the relative motion along its tangent, and all its
+accelerations."""
 
 import numpy as np
 
@@ -16,7 +17,8 @@ def bars(r1, r2, d, rho, theta2, mode):
 
 
 def ends(r1, r2, d, rho):
-    """The angle ACD when the crank lies along the frame, inwards and outwards: the pin's way along the slot."""
+    """The angle ACD when the crank lies along the frame, inwards and outwards: the pin's way along the
+    slot."""
     with np.errstate(invalid="ignore"):
         return tuple(
             np.degrees(np.arccos((rho**2 + d**2 - reach**2) / (2 * rho * d))) for reach in (r1 - r2, r1 + r2)

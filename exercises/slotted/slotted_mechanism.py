@@ -1,4 +1,5 @@
-"""Slotted mechanism: where is the block on its guide, and how does the guide turn? (chapter 3, exercise 1)."""
+"""Slotted mechanism: where is the block on its guide, and how does the guide turn? (chapter 3, exercise
+1)."""
 
 from coursework.degrees import angle, polar
 from coursework.figures import Figure, angle_mark, ground_pivot, line, link, note, pin, slider, slot_link
@@ -30,7 +31,8 @@ def guide_turns_visibly(omega4, omega2):
 
 
 def asks_swing(r1, r2, theta2):
-    """Half of the oscillating guides are asked their swing, so that the question tells nothing of the type."""
+    """Half of the oscillating guides are asked their swing, so that the question tells nothing of the
+    type."""
     return r2 < r1 and theta2 % 10 == 0
 
 

@@ -1,4 +1,5 @@
-"""The joint graph of a mechanism, read off its kinematic scheme: joints as a list, bodies, pairs, independent cycles."""
+"""The joint graph of a mechanism, read off its kinematic scheme: joints as a list, bodies, pairs, independent
+cycles."""
 
 from coursework.model import Exercise, Part, drawn
 from coursework.structure.numbered import to_count

@@ -1,4 +1,5 @@
-"""Structure of a mechanism: its bodies, pairs, mobility and independent cycles (chapter 3, equations 2 and 3)."""
+"""Structure of a mechanism: its bodies, pairs, mobility and independent cycles (chapter 3, equations 2 and
+3)."""
 
 from coursework.model import Exercise, Part, drawn
 from coursework.structure.numbered import to_count

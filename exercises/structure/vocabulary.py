@@ -1,7 +1,7 @@
 """Words and rules of the course: questions with one right case each, drawn from a bank of texts.
 
-The bank is ``vocabulary.toml`` (themes, and how many questions of each a variant asks) and the sections of the
-statement; the right cases and the remarks to wrong ones stand with the solution.
+The bank is ``vocabulary.toml`` (themes, and how many questions of each a variant asks) and the sections of
+the statement; the right cases and the remarks to wrong ones stand with the solution.
 """
 
 import tomllib

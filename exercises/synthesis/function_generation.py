@@ -34,7 +34,7 @@ def lengths_are_of_one_size(r1, r2, r3, r4):
     """A quarter to four times the frame."""
     return (
         (r2 > 0.25 * r1) & (r4 > 0.25 * r1) & (r3 > 0.25 * r1) & (r2 < 3 * r1) & (r4 < 3 * r1) & (r3 < 4 * r1)
-    )  # fmt: skip
+    )
 
 
 def it_passes_on_forces(least_transmission):

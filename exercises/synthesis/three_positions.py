@@ -1,4 +1,5 @@
-"""Three positions of a coupler: the fixed pivots of the four-bar linkage that takes it through all of them."""
+"""Three positions of a coupler: the fixed pivots of the four-bar linkage that takes it through all of
+them."""
 
 import numpy as np
 

@@ -1,4 +1,5 @@
-"""Two positions of a coupler: choose the fixed pivots of a four-bar linkage that takes it from one to the other."""
+"""Two positions of a coupler: choose the fixed pivots of a four-bar linkage that takes it from one to the
+other."""
 
 import numpy as np
 

@@ -1,4 +1,5 @@
-"""Quantities of a chain of solids: the rank of its loop equations at the given position, and what follows by counting."""
+"""Quantities of a chain of solids: the rank of its loop equations at the given position, and what follows by
+counting."""
 
 import numpy as np
 

@@ -1,4 +1,5 @@
-"""Common base of the solutions on spatial chains. Names begin with an underscore: none of it is a quantity."""
+"""Common base of the solutions on spatial chains. Names begin with an underscore: none of it is a
+quantity."""
 
 from __future__ import annotations
 
@@ -28,7 +29,8 @@ _NOWHERE = (np.nan, np.nan, np.nan)
 
 
 def _row_of(bodies, arrangement, tilt, inclined, name, along, *others):
-    """Mappings of the joints of an arrangement; ``bodies`` gives those that the joint of a number lies between."""
+    """Mappings of the joints of an arrangement; ``bodies`` gives those that the joint of a number lies
+    between."""
     rest = zip(*[iter(others)] * 5, strict=True)
     placed = arranged(arrangement, tilt, inclined, (name, along, 0, 0, 0), *rest)
     return tuple(joint.mapping(bodies(number)) for number, joint in enumerate(placed))
@@ -85,8 +87,8 @@ def _sum_of(terms):
 
 @lru_cache(maxsize=4096)
 def _lines(joints, what):
-    """A line a free motion, or with ``"wrenches"`` a transmitted action, at the origin: its number, its joint, its resultant
-    and its moment as formulas, and how it adds up from those before, where it does."""
+    """A line a free motion, or with ``"wrenches"`` a transmitted action, at the origin: its number, its
+    joint, its resultant and its moment as formulas, and how it adds up from those before, where it does."""
     of_joint, twists, letter = [], [], "a" if what == "wrenches" else "t"
     for number, joint in enumerate(joints, start=1):
         for twist in getattr(joint, what)((0.0, 0.0, 0.0), 1.0):

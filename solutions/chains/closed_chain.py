@@ -15,9 +15,24 @@ SYMBOLS = {"input_body": "b_e", "output_body": "b_s"}
 
 
 def _ring(
-    joint_1, direction_1, joint_2, direction_2, joint_3, direction_3, joint_4, direction_4,
-    x2, y2, z2, x3, y3, z3, x4, y4, z4,
-):  # fmt: skip
+    joint_1,
+    direction_1,
+    joint_2,
+    direction_2,
+    joint_3,
+    direction_3,
+    joint_4,
+    direction_4,
+    x2,
+    y2,
+    z2,
+    x3,
+    y3,
+    z3,
+    x4,
+    y4,
+    z4,
+):
     return (
         aligned(joint_1, direction_1, between=(0, 1)),
         aligned(joint_2, direction_2, (x2, y2, z2), (1, 2)),
@@ -27,20 +42,51 @@ def _ring(
 
 
 def joints(
-    joint_1, direction_1, joint_2, direction_2, joint_3, direction_3, joint_4, direction_4,
-    x2, y2, z2, x3, y3, z3, x4, y4, z4,
-):  # fmt: skip
+    joint_1,
+    direction_1,
+    joint_2,
+    direction_2,
+    joint_3,
+    direction_3,
+    joint_4,
+    direction_4,
+    x2,
+    y2,
+    z2,
+    x3,
+    y3,
+    z3,
+    x4,
+    y4,
+    z4,
+):
     """The four joints in order around the loop."""
     return each_distinct(
         _ring,
-        joint_1, direction_1, joint_2, direction_2, joint_3, direction_3, joint_4, direction_4,
-        x2, y2, z2, x3, y3, z3, x4, y4, z4,
-    )  # fmt: skip
+        joint_1,
+        direction_1,
+        joint_2,
+        direction_2,
+        joint_3,
+        direction_3,
+        joint_4,
+        direction_4,
+        x2,
+        y2,
+        z2,
+        x3,
+        y3,
+        z3,
+        x4,
+        y4,
+        z4,
+    )
 
 
 def motions(_solids):
-    """Of each joint: its free twists at the origin, as they are printed; how many the ones of the joints before it
-    do not give, counted all around the loop, and between the bodies of the input and of the output."""
+    """Of each joint: its free twists at the origin, as they are printed; how many the ones of the joints
+    before it do not give, counted all around the loop, and between the bodies of the input and of the
+    output."""
     return each(_twists, _solids)
 
 
@@ -108,11 +154,22 @@ def _revolutes(points, axes):
 KNOWN = (
     # A plane four-bar as a mechanism of space: the closure has rank 3.
     given(joints=_revolutes([(0, 0, 0), (0, 40, 0), (100, 80, 0), (120, 0, 0)], [_Z] * 4)).gives(
-        gamma=1, Nc=4, rc=3, m=1, Ns=20, rs=17, h=3, i=-2, m_internal=0, m_useful=1,
+        gamma=1,
+        Nc=4,
+        rc=3,
+        m=1,
+        Ns=20,
+        rs=17,
+        h=3,
+        i=-2,
+        m_internal=0,
+        m_useful=1,
     ),
     # Bricard's six hinges along edges of a cube: the count says that nothing moves, and it does.
     given(
-        joints=_revolutes([(0, 0, 0), (1, 0, 0), (1, 1, 0), (1, 1, 1), (0, 1, 1), (0, 0, 1)], [_Z, _Y, _X, _Z, _Y, _X]),
+        joints=_revolutes(
+            [(0, 0, 0), (1, 0, 0), (1, 1, 0), (1, 1, 1), (0, 1, 1), (0, 0, 1)], [_Z, _Y, _X, _Z, _Y, _X]
+        ),
     ).gives(gamma=1, Nc=6, rc=5, m=1, Ns=30, h=1, i=0, statics="hyperstatic"),
     # Crank, rod on two balls, rocker: the rod turns about itself.
     given(
@@ -123,4 +180,4 @@ KNOWN = (
             {"between": [3, 0], "joint": "revolute", "axis": _X, "point": (90, 0, 0)},
         ],
     ).gives(Nc=8, rc=6, m=2, h=0, i=2, m_internal=1, m_useful=1, statics="isostatic"),
-)  # fmt: skip
+)

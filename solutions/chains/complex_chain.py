@@ -1,4 +1,5 @@
-"""Complex chain: counts on the graph, the rank of all loop equations, and the motions that input and output do not see."""
+"""Complex chain: counts on the graph, the rank of all loop equations, and the motions that input and output
+do not see."""
 
 import numpy as np
 
@@ -15,9 +16,25 @@ SYMBOLS = {"input_body": "b_e", "output_body": "b_s"}
 
 
 def _linkage(
-    layout, joint_1, joint_2, joint_3, joint_4, joint_5, joint_6, joint_7, joint_8,
-    xA, yA, xB, yB, xC, xD, yD, xE, yE,
-):  # fmt: skip
+    layout,
+    joint_1,
+    joint_2,
+    joint_3,
+    joint_4,
+    joint_5,
+    joint_6,
+    joint_7,
+    joint_8,
+    xA,
+    yA,
+    xB,
+    yB,
+    xC,
+    xD,
+    yD,
+    xE,
+    yE,
+):
     names = (joint_1, joint_2, joint_3, joint_4, joint_5, joint_6, joint_7, joint_8)
     points = points_of(xA, yA, xB, yB, xC, xD, yD, xE, yE)
     rows = zip(LAYOUTS[layout].between, names, DIRECTIONS, points, strict=False)
@@ -25,20 +42,52 @@ def _linkage(
 
 
 def joints(
-    layout, joint_1, joint_2, joint_3, joint_4, joint_5, joint_6, joint_7, joint_8,
-    xA, yA, xB, yB, xC, xD, yD, xE, yE,
-):  # fmt: skip
+    layout,
+    joint_1,
+    joint_2,
+    joint_3,
+    joint_4,
+    joint_5,
+    joint_6,
+    joint_7,
+    joint_8,
+    xA,
+    yA,
+    xB,
+    yB,
+    xC,
+    xD,
+    yD,
+    xE,
+    yE,
+):
     """The lines of the table."""
     return each_distinct(
         _linkage,
-        layout, joint_1, joint_2, joint_3, joint_4, joint_5, joint_6, joint_7, joint_8,
-        xA, yA, xB, yB, xC, xD, yD, xE, yE,
-    )  # fmt: skip
+        layout,
+        joint_1,
+        joint_2,
+        joint_3,
+        joint_4,
+        joint_5,
+        joint_6,
+        joint_7,
+        joint_8,
+        xA,
+        yA,
+        xB,
+        yB,
+        xC,
+        xD,
+        yD,
+        xE,
+        yE,
+    )
 
 
 def motions(_solids):
-    """In the plane, then out of it: freedoms of the joints, and the rank of the loop equations. Nothing for joints
-    that keep the two together."""
+    """In the plane, then out of it: freedoms of the joints, and the rank of the loop equations. Nothing for
+    joints that keep the two together."""
     return each(_apart, _solids)
 
 
@@ -109,9 +158,11 @@ KNOWN = (
             _at(4, 5, "revolute", (300, 0, 0)),
             _at(5, 0, "prismatic", (300, 0, 0), _X),
         ],
-        input_body=1, output_body=5,
+        input_body=1,
+        output_body=5,
     ).gives(n=5, gamma=2, Nc=7, Ns=35, rc=6, m=1, i=-5, h=6, m_internal=0, m_useful=1, role="transforms"),
-    # The coupler on a ball and a cylinder, the rod on two balls: nothing is forced, and the rod turns about itself.
+    # The coupler on a ball and a cylinder, the rod on two balls: nothing is forced, and the rod turns about
+    # itself.
     given(
         joints=[
             _FOUR_BAR[0],
@@ -122,14 +173,17 @@ KNOWN = (
             _at(4, 5, "spherical", (300, 0, 0)),
             _at(5, 0, "prismatic", (300, 0, 0), _X),
         ],
-        input_body=1, output_body=5,
+        input_body=1,
+        output_body=5,
     ).gives(Nc=14, rc=12, m=2, m_internal=1, h=0, i=2, m_useful=1, statics="isostatic"),
     # A plane triangle hung on a rocker: nothing moves in the plane.
     given(
         joints=[*_FOUR_BAR, _at(3, 4, "revolute", (150, 60, 0)), _at(4, 0, "revolute", (300, 0, 0))],
-        input_body=1, output_body=3,
+        input_body=1,
+        output_body=3,
     ).gives(n=4, gamma=2, Nc=6, rc=6, m=0, h=6, m_useful=0, role="clamp"),
-    # Two screws in a row between one pair of bodies and a slide beside them: a table that is set by two handles.
+    # Two screws in a row between one pair of bodies and a slide beside them: a table that is set by two
+    # handles.
     given(
         joints=[
             _at(0, 1, "revolute", (0, 0, 0), _X),
@@ -139,6 +193,7 @@ KNOWN = (
             {**_at(3, 4, "helical", (0, 0, 50), _X), "pitch": 2},
             _at(2, 4, "prismatic", (0, 30, 50), _X),
         ],
-        input_body=1, output_body=4,
+        input_body=1,
+        output_body=4,
     ).gives(n=4, gamma=2, Nc=6, rc=4, m=2, h=8, m_internal=0, m_useful=2, role="adjusted"),
-)  # fmt: skip
+)

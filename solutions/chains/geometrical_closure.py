@@ -1,4 +1,5 @@
-"""Ball crank and fork: solution. The vector CA stays in the middle plane of the fork: its product with y3 vanishes."""
+"""Ball crank and fork: solution. The vector CA stays in the middle plane of the fork: its product with y3
+vanishes."""
 
 from coursework.degrees import acos, atan, atan2, cos, polar, sin
 from coursework.figures import Figure, angle_mark, ball, ground_pivot, line, slot_link, vector

@@ -1,4 +1,5 @@
-"""Equilibrium of a joint: solution. Of the six equations five give the unknowns, and the sixth, without any, the motor's torque."""
+"""Equilibrium of a joint: solution. Of the six equations five give the unknowns, and the sixth, without any,
+the motor's torque."""
 
 import numpy as np
 

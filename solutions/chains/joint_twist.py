@@ -1,4 +1,5 @@
-"""Twists and wrenches of joints: moments and velocities follow from one point to another, then components add up."""
+"""Twists and wrenches of joints: moments and velocities follow from one point to another, then components add
+up."""
 
 import numpy as np
 
@@ -54,7 +55,8 @@ def _second(joints):
     """A2, whether or not the point counts for the joint there."""
     if len(joints) < 2 or "point" not in joints[1]:
         raise WrongValue(
-            "A2 is the 'point' of the second joint of the list, which a joint without a point of its own has too; "
+            "A2 is the 'point' of the second joint of the list, which a joint without a point of its "
+            "own has too; "
             f"found {len(joints)} joints"
         )
     x, y, z = joints[1]["point"]
@@ -192,7 +194,8 @@ def forces_added_alone(X1, Y1, Z1, X2, Y2, Z2):
 def residual(
     joints, omega1, v1, axis, hinge, omega2, x2, y2, z2, V_10, V_20, V_plane, X1, Y1, Z1, X2, Y2, Z2, W
 ):
-    """Velocities of points by the field of a rigid body: at the ends of the axes what they must be; work by forces' points."""
+    """Velocities of points by the field of a rigid body: at the ends of the axes what they must be; work by
+    forces' points."""
     e, arm = _unit(axis), np.array([x2, y2, z2], dtype=float)
     f = np.array([float(letter == hinge) for letter in "xyz"])
     w, v = V_10[:3], V_10[3:]
@@ -224,21 +227,50 @@ _FORCES = {"X1": 10, "Y1": 0, "Z1": -20, "X2": 0, "Y2": 30, "Z2": 0}
 
 KNOWN = (
     # A hinge about z at its own point, then seen from a point off its axis along x.
-    given(joints=[{"joint": "revolute", "axis": (0, 0, 1), "point": (0, 0, 0)}, {"joint": "revolute", "axis": (0, 0, 1), "point": (40, 0, 0)}]).gives(
-        twist_1="wz", twist_1_at_2="wz vy", wrench_1_at_2="X Y Z L M N", wrench_both="X Y Z L M N", twist_both="0",
+    given(
+        joints=[
+            {"joint": "revolute", "axis": (0, 0, 1), "point": (0, 0, 0)},
+            {"joint": "revolute", "axis": (0, 0, 1), "point": (40, 0, 0)},
+        ]
+    ).gives(
+        twist_1="wz",
+        twist_1_at_2="wz vy",
+        wrench_1_at_2="X Y Z L M N",
+        wrench_both="X Y Z L M N",
+        twist_both="0",
     ),
     # A plate on a plane of normal z and a ball: a hinge about z through the ball.
-    given(joints=[{"joint": "planar", "normal": (0, 0, 1), "point": (0, 0, 0)}, {"joint": "spherical", "point": (0, 20, 0)}]).gives(
-        twist_1="wz vx vy", twist_1_at_2="wz vx vy", wrench_1_at_2="Z L M", wrench_both="X Y Z L M N", twist_both="wz vx",
+    given(
+        joints=[
+            {"joint": "planar", "normal": (0, 0, 1), "point": (0, 0, 0)},
+            {"joint": "spherical", "point": (0, 20, 0)},
+        ]
+    ).gives(
+        twist_1="wz vx vy",
+        twist_1_at_2="wz vx vy",
+        wrench_1_at_2="Z L M",
+        wrench_both="X Y Z L M N",
+        twist_both="wz vx",
     ),
     # Ball in a groove along x: free at its point but for the forces across; elsewhere these have moments.
-    given(joints=[{"joint": "annular", "axis": (1, 0, 0), "point": (0, 0, 0)}, {"joint": "annular", "axis": (1, 0, 0), "point": (20, 0, 0)}]).gives(
-        twist_1="wx wy wz vx", twist_1_at_2="wx wy wz vx vy vz", wrench_1_at_2="Y Z M N", wrench_both="Y Z M N", twist_both="wx vx",
+    given(
+        joints=[
+            {"joint": "annular", "axis": (1, 0, 0), "point": (0, 0, 0)},
+            {"joint": "annular", "axis": (1, 0, 0), "point": (20, 0, 0)},
+        ]
+    ).gives(
+        twist_1="wx wy wz vx",
+        twist_1_at_2="wx wy wz vx vy vz",
+        wrench_1_at_2="Y Z M N",
+        wrench_both="Y Z M N",
+        twist_both="wx vx",
     ),
     # By hand: Omega = (0, 6, 8), V(A1) = (0, 30, 40), A1A2 = (20, 0, 40).
     given(**_DATA).gives(
-        V_10=np.array([0, 6, 8, 240, 190, -80]), V_20=np.array([0, 6, 6, 0, 70, 40]), V_plane=np.array([0, -40, -2]),
+        V_10=np.array([0, 6, 8, 240, 190, -80]),
+        V_20=np.array([0, 6, 6, 0, 70, 40]),
+        V_plane=np.array([0, -40, -2]),
     ),
     # M(A1) = A1A2 x (0, 30, 0).
     given(**_DATA, **_FORCES).gives(W=np.array([10, 30, -20, -1200, 0, 600])),
-)  # fmt: skip
+)

@@ -16,14 +16,51 @@ def _together(*given):
 
 
 def joints(
-    arrangement, tilt, inclined, joint_1, direction_1,
-    joint_2, direction_2, x2, y2, z2, joint_3, direction_3, x3, y3, z3, joint_4, direction_4, x4, y4, z4,
-):  # fmt: skip
+    arrangement,
+    tilt,
+    inclined,
+    joint_1,
+    direction_1,
+    joint_2,
+    direction_2,
+    x2,
+    y2,
+    z2,
+    joint_3,
+    direction_3,
+    x3,
+    y3,
+    z3,
+    joint_4,
+    direction_4,
+    x4,
+    y4,
+    z4,
+):
     """Those of the arrangement, the first at A1, the origin."""
     return each_distinct(
-        _together, arrangement, tilt, inclined, joint_1, direction_1,
-        joint_2, direction_2, x2, y2, z2, joint_3, direction_3, x3, y3, z3, joint_4, direction_4, x4, y4, z4,
-    )  # fmt: skip
+        _together,
+        arrangement,
+        tilt,
+        inclined,
+        joint_1,
+        direction_1,
+        joint_2,
+        direction_2,
+        x2,
+        y2,
+        z2,
+        joint_3,
+        direction_3,
+        x3,
+        y3,
+        z3,
+        joint_4,
+        direction_4,
+        x4,
+        y4,
+        z4,
+    )
 
 
 def _combined(joints):

@@ -15,9 +15,21 @@ SYMBOLS = {"Nc_space": r"N_{c,\mathrm{3D}}", "rc_space": r"r_{c,\mathrm{3D}}"}
 
 
 def _ring(
-    joint_1, direction_1, joint_2, direction_2, joint_3, direction_3, joint_4, direction_4,
-    x2, y2, x3, y3, x4, y4,
-):  # fmt: skip
+    joint_1,
+    direction_1,
+    joint_2,
+    direction_2,
+    joint_3,
+    direction_3,
+    joint_4,
+    direction_4,
+    x2,
+    y2,
+    x3,
+    y3,
+    x4,
+    y4,
+):
     return (
         aligned(joint_1, direction_1, between=(0, 1)),
         aligned(joint_2, direction_2, (x2, y2, 0), (1, 2)),
@@ -27,15 +39,39 @@ def _ring(
 
 
 def joints(
-    joint_1, direction_1, joint_2, direction_2, joint_3, direction_3, joint_4, direction_4,
-    x2, y2, x3, y3, x4, y4,
-):  # fmt: skip
+    joint_1,
+    direction_1,
+    joint_2,
+    direction_2,
+    joint_3,
+    direction_3,
+    joint_4,
+    direction_4,
+    x2,
+    y2,
+    x3,
+    y3,
+    x4,
+    y4,
+):
     """The four joints in order around the loop."""
     return each_distinct(
         _ring,
-        joint_1, direction_1, joint_2, direction_2, joint_3, direction_3, joint_4, direction_4,
-        x2, y2, x3, y3, x4, y4,
-    )  # fmt: skip
+        joint_1,
+        direction_1,
+        joint_2,
+        direction_2,
+        joint_3,
+        direction_3,
+        joint_4,
+        direction_4,
+        x2,
+        y2,
+        x3,
+        y3,
+        x4,
+        y4,
+    )
 
 
 def _solids(joints):
@@ -185,7 +221,8 @@ def six_less_plane_rank(gamma, rc):
 
 
 def residual(joints, n, gamma, Nc, rc, m, Ns, rs, h, i, rc_space, h_space):
-    """Plane statics by the forces that each joint transmits in the plane, and every relation of the course."""
+    """Plane statics by the forces that each joint transmits in the plane, and every relation of the
+    course."""
     known = joints_of(joints)
     columns = []
     for joint in known:
@@ -237,34 +274,85 @@ def _loop(*names):
 KNOWN = (
     # The four-bar: isostatic in the plane, three times hyperstatic in space.
     given(joints=_loop(*[("revolute", _Z)] * 4)).gives(
-        planar_1="revolute", gamma=1, Nc=4, rc=3, m=1, Ns=8, rs=8, h=0, i=1, Nc_space=4, h_space=3,
+        planar_1="revolute",
+        gamma=1,
+        Nc=4,
+        rc=3,
+        m=1,
+        Ns=8,
+        rs=8,
+        h=0,
+        i=1,
+        Nc_space=4,
+        h_space=3,
         comparison="hidden",
     ),
     # Its joints loosened until nothing is forced: pivot, ball, ball in a groove along z, pivot.
     given(joints=_loop(("revolute", _Z), ("spherical", _Z), ("annular", _Z), ("revolute", _Z))).gives(
-        Nc=4, m=1, h=0, Nc_space=9, h_space=0, comparison="sound",
+        Nc=4,
+        m=1,
+        h=0,
+        Nc_space=9,
+        h_space=0,
+        comparison="sound",
     ),
     # Three slides in one plane: any of them could be fixed.
     given(joints=_loop(("prismatic", _X), ("prismatic", _Y), ("prismatic", (1, 0, 0)))).gives(
-        gamma=1, Nc=3, rc=2, m=1, Ns=6, h=1, h_space=4, comparison="plane",
+        gamma=1,
+        Nc=3,
+        rc=2,
+        m=1,
+        Ns=6,
+        h=1,
+        h_space=4,
+        comparison="plane",
     ),
     # A cam: pivot, contact at a point, slide.
     given(joints=_loop(("revolute", _Z), ("point_contact", _Y), ("prismatic", _Y))).gives(
-        planar_2="point_contact", planar_3="prismatic", Nc=4, rc=3, m=1, h=0, h_space=0,
+        planar_2="point_contact",
+        planar_3="prismatic",
+        Nc=4,
+        rc=3,
+        m=1,
+        h=0,
+        h_space=0,
     ),
     # A wedge: a slide along x, the slope that is common to both bodies, a slide along y.
     given(joints=_loop(("prismatic", _X), ("prismatic", (3, -4, 0)), ("prismatic", _Y))).gives(
-        planar_1="prismatic", planar_2="prismatic", gamma=1, Nc=3, rc=2, m=1, Ns=6, rs=5, h=1, comparison="plane",
+        planar_1="prismatic",
+        planar_2="prismatic",
+        gamma=1,
+        Nc=3,
+        rc=2,
+        m=1,
+        Ns=6,
+        rs=5,
+        h=1,
+        comparison="plane",
     ),
     # A pair of gears: two pivots, and a contact whose line of action is inclined.
     given(joints=_loop(("revolute", _Z), ("point_contact", (94, 34, 0)), ("revolute", _Z))).gives(
-        planar_2="point_contact", gamma=1, Nc=4, rc=3, m=1, Ns=5, rs=5, h=0, comparison="sound",
+        planar_2="point_contact",
+        gamma=1,
+        Nc=4,
+        rc=3,
+        m=1,
+        Ns=5,
+        rs=5,
+        h=0,
+        comparison="sound",
     ),
     # The table of the course: each column one joint.
     given(joints=_loop(("cylindrical", _Z), ("cylindrical", _X), ("annular", _X), ("planar", _Z))).gives(
-        planar_1="revolute", planar_2="prismatic", planar_3="point_contact", planar_4="free",
+        planar_1="revolute",
+        planar_2="prismatic",
+        planar_3="point_contact",
+        planar_4="free",
     ),
     given(joints=_loop(("annular", _Z), ("planar", _X), ("point_contact", _X), ("point_contact", _Z))).gives(
-        planar_1="revolute", planar_2="prismatic", planar_3="point_contact", planar_4="free",
+        planar_1="revolute",
+        planar_2="prismatic",
+        planar_3="point_contact",
+        planar_4="free",
     ),
-)  # fmt: skip
+)

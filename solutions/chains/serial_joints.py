@@ -16,14 +16,51 @@ def _in_a_row(*given):
 
 
 def joints(
-    arrangement, tilt, inclined, joint_1, direction_1,
-    joint_2, direction_2, x2, y2, z2, joint_3, direction_3, x3, y3, z3, joint_4, direction_4, x4, y4, z4,
-):  # fmt: skip
+    arrangement,
+    tilt,
+    inclined,
+    joint_1,
+    direction_1,
+    joint_2,
+    direction_2,
+    x2,
+    y2,
+    z2,
+    joint_3,
+    direction_3,
+    x3,
+    y3,
+    z3,
+    joint_4,
+    direction_4,
+    x4,
+    y4,
+    z4,
+):
     """Those of the arrangement, the first at A1, the origin."""
     return each_distinct(
-        _in_a_row, arrangement, tilt, inclined, joint_1, direction_1,
-        joint_2, direction_2, x2, y2, z2, joint_3, direction_3, x3, y3, z3, joint_4, direction_4, x4, y4, z4,
-    )  # fmt: skip
+        _in_a_row,
+        arrangement,
+        tilt,
+        inclined,
+        joint_1,
+        direction_1,
+        joint_2,
+        direction_2,
+        x2,
+        y2,
+        z2,
+        joint_3,
+        direction_3,
+        x3,
+        y3,
+        z3,
+        joint_4,
+        direction_4,
+        x4,
+        y4,
+        z4,
+    )
 
 
 def _combined(joints):
@@ -60,7 +97,8 @@ def h():
 
 @told_after("m_useful")
 def equivalent(_combined):
-    """No joint at all only where all six motions are free at every pose; where they are at this one alone, another."""
+    """No joint at all only where all six motions are free at every pose; where they are at this one alone,
+    another."""
     return each_stacked(lambda one: one.equivalent.name, _combined)
 
 
@@ -163,12 +201,20 @@ _O = (0, 0, 0)
 KNOWN = (
     # A ball in a shoe that slides on a plane: a point contact, and the ball may spin about the normal unseen.
     given(joints=[{"joint": "planar", "normal": _Z}, {"joint": "spherical", "point": _O}]).gives(
-        Nc=6, m=6, m_useful=5, m_internal=1, h=0, equivalent="point_contact",
+        Nc=6,
+        m=6,
+        m_useful=5,
+        m_internal=1,
+        h=0,
+        equivalent="point_contact",
         axis_dir=np.array([0.0, 0.0, 1.0]),
     ),
     # A universal joint: two hinges whose axes meet at right angles.
     given(joints=[{"joint": "revolute", "axis": axis, "point": _O} for axis in (_X, _Y)]).gives(
-        Nc=2, m_useful=2, m_internal=0, equivalent="spherical_pin",
+        Nc=2,
+        m_useful=2,
+        m_internal=0,
+        equivalent="spherical_pin",
     ),
     # A drawing board's two-hinged arm with a third hinge holds a plane against the board.
     given(
@@ -176,23 +222,43 @@ KNOWN = (
     ).gives(Nc=3, m_useful=3, m_internal=0, equivalent="planar"),
     # A shaft that turns in a sleeve which turns in the frame about the same axis.
     given(joints=[{"joint": "revolute", "axis": _Y, "point": (5, y, 7)} for y in (0, 30)]).gives(
-        Nc=2, m=2, m_useful=1, m_internal=1, equivalent="revolute",
+        Nc=2,
+        m=2,
+        m_useful=1,
+        m_internal=1,
+        equivalent="revolute",
     ),
     # A rod between two balls: it pushes along its line and turns about it.
     given(joints=[{"joint": "spherical", "point": p} for p in (_O, (0, 80, 0))]).gives(
-        Nc=6, m_useful=5, m_internal=1, equivalent="point_contact", axis_dir=np.array([0.0, 1.0, 0.0]),
+        Nc=6,
+        m_useful=5,
+        m_internal=1,
+        equivalent="point_contact",
+        axis_dir=np.array([0.0, 1.0, 0.0]),
     ),
     # Three slides and a ball: all six, however far they slide and turn.
-    given(joints=[*({"joint": "prismatic", "axis": a} for a in (_X, (0, 3, 4), (0, 4, -3))), {"joint": "spherical", "point": _O}]).gives(
-        m_useful=6, m_internal=0, equivalent="free",
+    given(
+        joints=[
+            *({"joint": "prismatic", "axis": a} for a in (_X, (0, 3, 4), (0, 4, -3))),
+            {"joint": "spherical", "point": _O},
+        ]
+    ).gives(
+        m_useful=6,
+        m_internal=0,
+        equivalent="free",
     ),
     # An arm of six hinges: all six here, but not where two of its axes are in line.
     given(
         joints=[
             {"joint": "revolute", "axis": axis, "point": point}
             for axis, point in (
-                (_Z, _O), (_Y, (0, 0, 300)), (_Y, (300, 0, 700)), (_X, (800, 0, 300)), (_Y, (800, 0, 300)), ((3, 0, 4), (800, 0, 300)),
+                (_Z, _O),
+                (_Y, (0, 0, 300)),
+                (_Y, (300, 0, 700)),
+                (_X, (800, 0, 300)),
+                (_Y, (800, 0, 300)),
+                ((3, 0, 4), (800, 0, 300)),
             )
         ]
     ).gives(Nc=6, m_useful=6, m_internal=0, equivalent="other"),
-)  # fmt: skip
+)

@@ -25,8 +25,8 @@ MECHANISM = Mechanism(
     ),
 )
 
-#: Which curve stands in each of the four drawings, for every arrangement: 0 is that of P, 1 that of beta on the other
-#: side of AB, 2 that of the other mode, 3 that of a point laid off at B.
+#: Which curve stands in each of the four drawings, for every arrangement: 0 is that of P, 1 that of beta on
+#: the other side of AB, 2 that of the other mode, 3 that of a point laid off at B.
 _ORDERS = tuple(permutations(range(4)))
 _DRAWINGS = ("I", "II", "III", "IV")
 

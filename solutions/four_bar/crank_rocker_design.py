@@ -1,8 +1,8 @@
 """Crank-rocker to be designed: solution.
 
-The rocker turns back at B1 and B2, where crank and coupler are in line: O sees them at the distances r3 - r2 and
-r3 + r2, and under the angle phi by which the slow stroke exceeds half a turn of the crank. So O lies on the arc
-that sees the chord B1 B2 under phi, and may be any point of it; the angle ``beta`` at B1 tells which.
+The rocker turns back at B1 and B2, where crank and coupler are in line: O sees them at the distances r3 - r2
+and r3 + r2, and under the angle phi by which the slow stroke exceeds half a turn of the crank. So O lies on
+the arc that sees the chord B1 B2 under phi, and may be any point of it; the angle ``beta`` at B1 tells which.
 """
 
 import numpy as np
@@ -41,7 +41,8 @@ def chord(r4, psi):
 
 
 def beta(psi, phi):
-    """Angle O B1 B2: of the whole degrees, the one whose linkage keeps the transmission angle farthest from 0 and 180."""
+    """Angle O B1 B2: of the whole degrees, the one whose linkage keeps the transmission angle farthest from 0
+    and 180."""
     psi, phi = np.asarray(psi, dtype=float)[..., None], np.asarray(phi, dtype=float)[..., None]
     with np.errstate(invalid="ignore"):
         found = _least_transmission(*_lengths(1.0, psi, phi, TRIED), 1.0)
@@ -129,7 +130,8 @@ SWING_MARGIN, ALPHA_MARGIN, TRANSMISSION_MARGIN = 1.0, 1.0, 0.5
 
 @judge
 def meets_the_demands(answers, r4, psi, alpha, mu_min):
-    """Any crank-rocker of this swing, time ratio and transmission angle, by the motion of the student's own."""
+    """Any crank-rocker of this swing, time ratio and transmission angle, by the motion of the student's
+    own."""
     if len(answers) < 3:
         return {}
     r1, r2, r3 = (float(answers[name]) for name in ("r1", "r2", "r3"))

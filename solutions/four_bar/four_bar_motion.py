@@ -26,9 +26,12 @@ UNITS = {"AC": "mm", "phi": "deg", "psi": "deg", "side": "1"}
 SYMBOLS = {"AC": "AC", "phi": r"\varphi", "psi": r"\psi", "side": r"\varepsilon"}
 LOOPS = {
     "loop_1": (
-        Vector("r2", "theta2"), Vector("r3", "theta3"), Vector("r1", 0.0, -1), Vector("r4", "theta4", -1),
+        Vector("r2", "theta2"),
+        Vector("r3", "theta3"),
+        Vector("r1", 0.0, -1),
+        Vector("r4", "theta4", -1),
     ),
-}  # fmt: skip
+}
 EFFECTS = {
     "velocity": ("omega3", "omega4", "v_B", "v_BA"),
     "acceleration": ("alpha3", "alpha4", "a_B", "a_BA_n", "a_BA_t"),
@@ -166,9 +169,26 @@ def figure(r1, r2, theta2, r3, theta3, omega2, omega4):
 
 
 def residual(
-    r1, r2, r3, r4, theta2, omega2, alpha2, mode,
-    theta3, theta4, omega3, omega4, alpha3, alpha4, v_B, a_B, v_BA, a_BA_n, a_BA_t,
-):  # fmt: skip
+    r1,
+    r2,
+    r3,
+    r4,
+    theta2,
+    omega2,
+    alpha2,
+    mode,
+    theta3,
+    theta4,
+    omega3,
+    omega4,
+    alpha3,
+    alpha4,
+    v_B,
+    a_B,
+    v_BA,
+    a_BA_n,
+    a_BA_t,
+):
     """Loop closure, its two derivatives, the side of B, and B's motion as seen from C and from A."""
     crank, coupler, rocker = (
         length * np.exp(1j * np.radians(theta))
@@ -198,21 +218,53 @@ _RIGHT_ANGLE = {"r1": 80, "r2": 30, "r3": 40, "r4": 30, "theta2": 0, "omega2": 5
 KNOWN = (
     # A rectangle that is a parallelogram: the coupler only translates, B moves as A does.
     given(r1=100, r2=50, r3=100, r4=50, theta2=90, omega2=2, alpha2=3, mode="open").gives(
-        theta3=0, theta4=90, omega3=0, omega4=2, alpha3=0, alpha4=3, v_B=100, a_B=250, v_BA=0, a_BA_n=0,
+        theta3=0,
+        theta4=90,
+        omega3=0,
+        omega4=2,
+        alpha3=0,
+        alpha4=3,
+        v_B=100,
+        a_B=250,
+        v_BA=0,
+        a_BA_n=0,
         a_BA_t=0,
     ),
     # Crank along the frame, ABC a 3-4-5 triangle, right-angled at B: coupler and rocker turn alike.
     given(**_RIGHT_ANGLE, mode="open").gives(
-        theta3="36.8699", theta4="126.8699", omega3=-3, omega4=-3, alpha3=-24, alpha4=26, v_B=90,
-        a_B=30 * 757**0.5, v_BA=120, a_BA_n=360, a_BA_t=-960,
+        theta3="36.8699",
+        theta4="126.8699",
+        omega3=-3,
+        omega4=-3,
+        alpha3=-24,
+        alpha4=26,
+        v_B=90,
+        a_B=30 * 757**0.5,
+        v_BA=120,
+        a_BA_n=360,
+        a_BA_t=-960,
     ),
     # Its mirror image: what omega2 squared brings changes sign, what alpha2 brings does not.
     given(**_RIGHT_ANGLE, mode="crossed").gives(
-        theta3="-36.8699", theta4="-126.8699", omega3=-3, omega4=-3, alpha3=12, alpha4=-38, a_BA_t=480,
+        theta3="-36.8699",
+        theta4="-126.8699",
+        omega3=-3,
+        omega4=-3,
+        alpha3=12,
+        alpha4=-38,
+        a_BA_t=480,
     ),
     # Crank and coupler stretched out: the rocker turns back. OCB has a right angle at C, 60 degrees at O.
     given(r1=60, r2=30, r3=90, r4=60 * 3**0.5, theta2=60, omega2=3, alpha2=6, mode="open").gives(
-        theta3=60, theta4=90, omega3=-1, omega4=0, alpha3=4 * 3**0.5 - 2, alpha4=4 * 3**0.5, v_B=0, a_B=720,
-        v_BA=90, a_BA_n=90,
+        theta3=60,
+        theta4=90,
+        omega3=-1,
+        omega4=0,
+        alpha3=4 * 3**0.5 - 2,
+        alpha4=4 * 3**0.5,
+        v_B=0,
+        a_B=720,
+        v_BA=90,
+        a_BA_n=90,
     ),
-)  # fmt: skip
+)

@@ -28,9 +28,12 @@ UNITS = {
 SYMBOLS = {"phi": r"\varphi", "psi": r"\psi", "AC": "AC", "s_plus_l": "s + l", "p_plus_q": "p + q"}
 LOOPS = {
     "loop_1": (
-        Vector("r2", "theta2"), Vector("r3", "theta3"), Vector("r1", 0.0, -1), Vector("r4", "theta4", -1),
+        Vector("r2", "theta2"),
+        Vector("r3", "theta3"),
+        Vector("r1", 0.0, -1),
+        Vector("r4", "theta4", -1),
     ),
-}  # fmt: skip
+}
 MECHANISM = Mechanism(
     ground={"O": 0, "C": "r1"},
     bodies=(
@@ -290,22 +293,47 @@ def figure(r1, r2, r3, r4, theta2, theta3_open, theta3_crossed):
 KNOWN = (
     # A rectangle, and the same turned over about its diagonal: a 7-24-25 triangle.
     given(r1=40, r2=30, r3=40, r4=30, theta2=90).gives(
-        a=-3200, b=2400, c=-3200, theta3_open=0, theta4_open=90, theta3_crossed="-73.7398",
-        theta4_crossed="-163.7398", mu=90, linkage_type="change-point",
+        a=-3200,
+        b=2400,
+        c=-3200,
+        theta3_open=0,
+        theta4_open=90,
+        theta3_crossed="-73.7398",
+        theta4_crossed="-163.7398",
+        mu=90,
+        linkage_type="change-point",
     ),
     # Crank along the frame, b = 0, and ABC equilateral.
     given(r1=100, r2=40, r3=60, r4=60, theta2=0).gives(
-        a=-7200, b=0, c=-3600, theta3_open=60, theta4_open=120, theta3_crossed=-60, theta4_crossed=-120,
-        mu=60, linkage_type="triple-rocker",
+        a=-7200,
+        b=0,
+        c=-3600,
+        theta3_open=60,
+        theta4_open=120,
+        theta3_crossed=-60,
+        theta4_crossed=-120,
+        mu=60,
+        linkage_type="triple-rocker",
     ),
     # Crank away from the frame, b = 0 again, and ABC half a square.
     given(r1=40, r2=20, r3=30 * 2**0.5, r4=30 * 2**0.5, theta2=180).gives(
-        b=0, theta3_open=45, theta4_open=135, theta3_crossed=-45, theta4_crossed=-135, mu=90,
+        b=0,
+        theta3_open=45,
+        theta4_open=135,
+        theta3_crossed=-45,
+        theta4_crossed=-135,
+        mu=90,
         linkage_type="crank-rocker",
     ),
     # A dead point: coupler and rocker in line, both assemblies at once.
     given(r1=60, r2=20, r3=50, r4=30, theta2=180).gives(
-        a=-8000, c=-8000, theta3_open=0, theta3_crossed=0, theta4_open=180, theta4_crossed=180, mu=180,
+        a=-8000,
+        c=-8000,
+        theta3_open=0,
+        theta3_crossed=0,
+        theta4_open=180,
+        theta4_crossed=180,
+        mu=180,
         linkage_type="change-point",
     ),
     # The output, the frame, the coupler shortest.
@@ -314,4 +342,4 @@ KNOWN = (
     given(r1=100, r2=90, r3=40, r4=80, theta2=60).gives(linkage_type="double-rocker"),
     # Equality of the printed lengths, which their doubles miss: 0.1 + 0.6 = 0.3 + 0.4.
     given(r1=0.3, r2=0.1, r3=0.4, r4=0.6, theta2=60).gives(linkage_type="change-point"),
-)  # fmt: skip
+)

@@ -1,8 +1,8 @@
 """Four-bar linkage: the crank's torque and the forces in the joints, from the effects that are called for.
 
-Each effect is a bundle of forces and couples on the bodies, inertia among them by d'Alembert's principle. The torque
-follows from their virtual power alone, without any force of a joint; these come from the balance of the moments of
-coupler and rocker about their far pins, then body by body. Without effects nothing pulls.
+Each effect is a bundle of forces and couples on the bodies, inertia among them by d'Alembert's principle. The
+torque follows from their virtual power alone, without any force of a joint; these come from the balance of
+the moments of coupler and rocker about their far pins, then body by body. Without effects nothing pulls.
 """
 
 from typing import Any, NamedTuple
@@ -75,9 +75,12 @@ SYMBOLS = {
 }
 LOOPS = {
     "loop_1": (
-        Vector("r2", "theta2"), Vector("r3", "theta3"), Vector("r1", 0.0, -1), Vector("r4", "theta4", -1),
+        Vector("r2", "theta2"),
+        Vector("r3", "theta3"),
+        Vector("r1", 0.0, -1),
+        Vector("r4", "theta4", -1),
     ),
-}  # fmt: skip
+}
 
 
 EFFECTS = {
@@ -247,7 +250,8 @@ def Y3(applied):
 
 
 @formula(
-    r"\frac{<s3> \times <r3>}{\num{1000}} \times \left(<Y3> \times \cos <theta3> - <X3> \times \sin <theta3>\right)"
+    r"\frac{<s3> \times <r3>}{\num{1000}} \times \left(<Y3> \times \cos <theta3> - <X3> \times \sin "
+    r"<theta3>\right)"
     r" - <J3> \times <alpha3>"
 )
 def M_A(applied):
@@ -266,7 +270,8 @@ def Y4(applied):
 
 
 @formula(
-    r"\frac{<s4> \times <r4>}{\num{1000}} \times \left(<Y4> \times \cos <theta4> - <X4> \times \sin <theta4>\right)"
+    r"\frac{<s4> \times <r4>}{\num{1000}} \times \left(<Y4> \times \cos <theta4> - <X4> \times \sin "
+    r"<theta4>\right)"
     r" - <J4> \times <alpha4> - <M> \times \operatorname{sgn} <omega4>"
 )
 def M_C(applied):
@@ -412,9 +417,26 @@ def polygons(r2, r3, r4, theta2, theta3, theta4, omega2, omega3, omega4, alpha2,
 
 
 def motion(
-    r1, r2, r3, r4, theta2, theta3, theta4, omega2, omega3, omega4, alpha2, alpha3, alpha4, s3, s4,
-    a_G3_x, a_G3_y, a_G4_x, a_G4_y,
-):  # fmt: skip
+    r1,
+    r2,
+    r3,
+    r4,
+    theta2,
+    theta3,
+    theta4,
+    omega2,
+    omega3,
+    omega4,
+    alpha2,
+    alpha3,
+    alpha4,
+    s3,
+    s4,
+    a_G3_x,
+    a_G3_y,
+    a_G4_x,
+    a_G4_y,
+):
     """The two moving joints and the two centres of mass that move."""
     crank, coupler, rocker = polar(r2, theta2), polar(r3, theta3), polar(r4, theta4)
     v_A, v_B = 1j * omega2 * crank, 1j * omega4 * rocker
@@ -427,11 +449,44 @@ def motion(
 
 
 def residual(
-    r1, r2, r3, r4, theta2, omega2, alpha2, mode, m2, J2, s3, m3, J3, s4, m4, J4, M,
-    theta3, theta4, omega3, omega4, alpha3, alpha4, torque, R_A, R_B, R_C, R_O,
-    R_A_x, R_A_y, R_B_x, R_B_y, R_C_x, R_C_y, R_O_y,
-):  # fmt: skip
-    """The closed loop and its derivatives; each body by itself, its forces and its moments about its centre of mass."""
+    r1,
+    r2,
+    r3,
+    r4,
+    theta2,
+    omega2,
+    alpha2,
+    mode,
+    m2,
+    J2,
+    s3,
+    m3,
+    J3,
+    s4,
+    m4,
+    J4,
+    M,
+    theta3,
+    theta4,
+    omega3,
+    omega4,
+    alpha3,
+    alpha4,
+    torque,
+    R_A,
+    R_B,
+    R_C,
+    R_O,
+    R_A_x,
+    R_A_y,
+    R_B_x,
+    R_B_y,
+    R_C_x,
+    R_C_y,
+    R_O_y,
+):
+    """The closed loop and its derivatives; each body by itself, its forces and its moments about its centre
+    of mass."""
 
     def vector(length, theta):
         return length / 1000 * np.exp(1j * np.radians(theta))
@@ -484,7 +539,8 @@ KNOWN = (
     given(**_UPRIGHT, s3=0.5, m3=4, s4=0.5, m4=3, m2=5)
     .under("gravity")
     .gives(torque=0, R_A=19.62, R_B=19.62, R_C=49.05, R_O=68.67),
-    # Crank and rocker at 60 degrees: the coupler's weight moves along x by 0.05 m per radian, the rocker's by half.
+    # Crank and rocker at 60 degrees: the coupler's weight moves along x by 0.05 m per radian, the rocker's by
+    # half.
     given(**_UPRIGHT | {"theta2": 60}, s3=0.5, m3=4, s4=0.5, m4=2, m2=5)
     .under("gravity")
     .gives(torque=2.4525, R_A_y=19.62, R_B_y=-19.62),

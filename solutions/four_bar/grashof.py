@@ -71,7 +71,8 @@ def always_crank_rocker(linkage_type):
 
 @mistake("linkage_type")
 def rule_reversed(r1, r2, r3, r4, linkage_type):
-    """A triple rocker for every linkage that keeps the rule, and a type by the shortest bar for one that does not."""
+    """A triple rocker for every linkage that keeps the rule, and a type by the shortest bar for one that does
+    not."""
     by_shortest = grashof.type_by_shortest(r1, r2, r3, r4)
     kept = np.isin(linkage_type, ("triple-rocker", "change-point", "impossible"))
     found = np.where(linkage_type == "triple-rocker", by_shortest, linkage_type)

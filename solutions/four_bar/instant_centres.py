@@ -156,7 +156,8 @@ def polygons(r2, r3, r4, theta2, theta3, theta4, omega2, omega3, omega4):
 
 
 def figure(r1, r2, theta2, r3, theta3, omega2, omega3, x24, d13):
-    """The lines that cross at both centres, and the velocities of A and M, perpendicular to those from I13."""
+    """The lines that cross at both centres, and the velocities of A and M, perpendicular to those from
+    I13."""
     O, A, C = 0j, polar(r2, theta2), complex(r1)
     B, I13, I24 = A + polar(r3, theta3), polar(d13, theta2), complex(x24)
     M = (A + B) / 2
@@ -181,9 +182,7 @@ def figure(r1, r2, theta2, r3, theta3, omega2, omega3, x24, d13):
     )
 
 
-def residual(
-    r1, r2, r3, r4, theta2, omega2, mode, theta3, theta4, x24, d13, omega3, omega4, v_M
-):  # fmt: skip
+def residual(r1, r2, r3, r4, theta2, omega2, mode, theta3, theta4, x24, d13, omega3, omega4, v_M):
     """Loop closure; each centre on its two lines; the velocities of the loop and of M, without any centre."""
     crank, coupler, rocker = (
         length * np.exp(1j * np.radians(theta))
@@ -207,16 +206,17 @@ KNOWN = (
     # Six bodies, a shaper: fifteen centres.
     given(n=6).gives(N=15),
     given(n=4).gives(N=6),
-    # Crank upright and coupler at -45 degrees, of height 30: I24 is where it meets the frame. B is at (90, 10): the rocker
-    # slopes by -1/3, and meets the line of the crank at 40.
+    # Crank upright and coupler at -45 degrees, of height 30: I24 is where it meets the frame. B is at (90,
+    # 10): the rocker slopes by -1/3, and meets the line of the crank at 40.
     given(r1=120, r2=100, r3=90 * 2**0.5, r4=1000**0.5, theta2=90, omega2=3, mode="crossed").gives(
         x24=100, omega4=-15, d13=40, omega3=5, v_M=5 * 2250**0.5
     ),
-    # A 3-4-5 triangle ABC, right-angled at B, the crank along the frame: coupler and rocker turn alike, about C.
+    # A 3-4-5 triangle ABC, right-angled at B, the crank along the frame: coupler and rocker turn alike, about
+    # C.
     given(r1=90, r2=40, r3=40, r4=30, theta2=0, omega2=5, mode="open").gives(
         omega4=-4, omega3=-4, x24=40, d13=90
     ),
-    # A crossed parallelogram: crank and coupler are alike by reflection in the bisector of their lines, IA = IC, so that
-    # x + sqrt(x^2 + 60^2) = 100.
+    # A crossed parallelogram: crank and coupler are alike by reflection in the bisector of their lines, IA =
+    # IC, so that x + sqrt(x^2 + 60^2) = 100.
     given(r1=100, r2=60, r3=100, r4=60, theta2=90, omega2=2, mode="crossed").gives(x24=32, omega4=-16 / 17),
 )

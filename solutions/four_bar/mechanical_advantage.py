@@ -1,7 +1,7 @@
 """Mechanical advantage of a four-bar linkage: solution. What goes in as power comes out as power.
 
-The force F_e acts on the crank pin A along its velocity, F_s is what the rocker pushes with at B along
-its own. The linkage is that of four_bar_motion; its angles and the rate of its rocker come from the numeric core.
+The force F_e acts on the crank pin A along its velocity, F_s is what the rocker pushes with at B along its
+own. The linkage is that of four_bar_motion; its angles and the rate of its rocker come from the numeric core.
 """
 
 import numpy as np
@@ -183,9 +183,23 @@ def figure(r1, r2, theta2, r3, theta3, omega2, omega4):
 
 
 def residual(
-    r1, r2, r3, r4, theta2, omega2, mode, F_e,
-    theta3, theta4, omega3, omega4, mechanical_advantage, F_s, torque_ratio, Gamma_s,
-):  # fmt: skip
+    r1,
+    r2,
+    r3,
+    r4,
+    theta2,
+    omega2,
+    mode,
+    F_e,
+    theta3,
+    theta4,
+    omega3,
+    omega4,
+    mechanical_advantage,
+    F_s,
+    torque_ratio,
+    Gamma_s,
+):
     """Loop closure and its derivative, the side of B, and the power that each pair of efforts passes on."""
     crank, coupler, rocker = (
         length * np.exp(1j * np.radians(theta))

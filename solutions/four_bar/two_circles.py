@@ -1,6 +1,8 @@
-"""Two circles: solution. B is at r3 from A and at r4 from C; both points where the circles meet close the linkage.
+"""Two circles: solution. B is at r3 from A and at r4 from C; both points where the circles meet close the
+linkage.
 
-The judge takes B1 and B2 in either order; the angles of index 1 are those of the point that the student calls B1.
+The judge takes B1 and B2 in either order; the angles of index 1 are those of the point that the student calls
+B1.
 """
 
 import cmath
@@ -309,8 +311,8 @@ def c_vector(p, c):
 
 
 def _wrong_circles(images, kl, center, radius_A, radius):
-    """Where the circle of a radius about A meets another, on paper: on the left of the line of centres, then on its right;
-    the right pins where they do not meet."""
+    """Where the circle of a radius about A meets another, on paper: on the left of the line of centres, then
+    on its right; the right pins where they do not meet."""
     A, _, *pins = images
     way = center - A
     along = (abs(way) ** 2 + radius_A**2 - radius**2) / (2 * abs(way))
@@ -422,7 +424,7 @@ def figure(r1, r2, r3, r4, theta2, theta3_open, theta3_crossed):
 
 def residual(
     r1, r2, r3, r4, theta2, kl, a, c, b1, b2, theta3_open, theta4_open, theta3_crossed, theta4_crossed
-):  # fmt: skip
+):
     """Distances on paper, and the angles that the bars have there."""
     z_a, z_c, *pins = (q[..., 0] + 1j * q[..., 1] for q in (a, c, b1, b2))
     angles = (theta3_open, theta4_open), (theta3_crossed, theta4_crossed)
@@ -438,12 +440,26 @@ def residual(
 KNOWN = (
     # A rectangle, and the same turned over about its diagonal: a 7-24-25 triangle.
     given(r1=80, r2=60, r3=80, r4=60, theta2=90).gives(
-        kl=1, a=(0, 60), c=(80, 0), b1=(80, 60), b2=(22.4, -16.8), theta3_open=0, theta4_open=90,
-        theta3_crossed="-73.7398", theta4_crossed="-163.7398",
+        kl=1,
+        a=(0, 60),
+        c=(80, 0),
+        b1=(80, 60),
+        b2=(22.4, -16.8),
+        theta3_open=0,
+        theta4_open=90,
+        theta3_crossed="-73.7398",
+        theta4_crossed="-163.7398",
     ),
     # Crank along the frame and ABC equilateral, of side 60.
     given(r1=100, r2=40, r3=60, r4=60, theta2=0).gives(
-        kl=2, a=(20, 0), c=(50, 0), b1=(35, 15 * 3**0.5), b2=(35, -15 * 3**0.5), theta3_open=60,
-        theta4_open=120, theta3_crossed=-60, theta4_crossed=-120,
+        kl=2,
+        a=(20, 0),
+        c=(50, 0),
+        b1=(35, 15 * 3**0.5),
+        b2=(35, -15 * 3**0.5),
+        theta3_open=60,
+        theta4_open=120,
+        theta3_crossed=-60,
+        theta4_crossed=-120,
     ),
-)  # fmt: skip
+)

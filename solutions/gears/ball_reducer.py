@@ -24,7 +24,10 @@ def _vector(x, y, z):
 
 def graph():
     """Two shafts on pivots of the frame; the ball touches the frame twice and each shaft once."""
-    return "0-1 revolute, 0-2 revolute, 0-3 point_contact, 0-3 point_contact, 1-3 point_contact, 2-3 point_contact"
+    return (
+        "0-1 revolute, 0-2 revolute, 0-3 point_contact, 0-3 point_contact, 1-3 point_contact, 2-3 "
+        "point_contact"
+    )
 
 
 def omega_why():
@@ -140,8 +143,8 @@ def spin_D(omega, theta_dot):
     return omega - theta_dot
 
 
-# The statement's half-section looks the same at every instant: the film looks down along z instead, and sees D and B
-# where O3 is. In the basis (x_a, y_a, z) the ball turns about one axis, at Omega 3/0 less phi_dot z.
+# The statement's half-section looks the same at every instant: the film looks down along z instead, and sees
+# D and B where O3 is. In the basis (x_a, y_a, z) the ball turns about one axis, at Omega 3/0 less phi_dot z.
 
 
 def _one_round_of_the_ball(psi_dot, phi_dot):
@@ -166,7 +169,8 @@ def _seen(vector):
 
 
 def _seam(axis, place, r):
-    """The great circle of the ball through its axis and a place on it: the upper half, which is what one sees."""
+    """The great circle of the ball through its axis and a place on it: the upper half, which is what one
+    sees."""
     normal = np.cross(axis, place)
     normal /= np.linalg.norm(normal)
     end = np.cross((0.0, 0.0, 1.0), normal)
@@ -205,7 +209,8 @@ def _end_view(psi, R, r, psi_dot, omega, phi_dot, theta_dot):
 
 
 def motion(psi, R, r, psi_dot, psi_ddot, omega, phi_dot, theta_dot, v_O3, a_O3_x, a_O3_y):
-    """The centre of the ball, and the points of the shafts and of the ball that are at C, D and A at the start."""
+    """The centre of the ball, and the points of the shafts and of the ball that are at C, D and A at the
+    start."""
     phi, theta = psi * phi_dot / psi_dot, psi * theta_dot / psi_dot
     axis, angle = _ball_in_basis(psi, omega, phi_dot, psi_dot)
     from_O3 = _turned(_vector(r, 0.0, 0.0), axis, angle)
@@ -326,7 +331,10 @@ def contacts_with_the_frame_as_one():
 @mistake("graph")
 def shafts_on_one_another():
     """The output shaft pivoted on the input shaft, since they have one axis."""
-    return "0-1 revolute, 1-2 revolute, 0-3 point_contact, 0-3 point_contact, 1-3 point_contact, 2-3 point_contact"
+    return (
+        "0-1 revolute, 1-2 revolute, 0-3 point_contact, 0-3 point_contact, 1-3 point_contact, 2-3 "
+        "point_contact"
+    )
 
 
 @mistake("no_slip_B")
@@ -346,10 +354,25 @@ def no_slip_at_D_left_out():
 
 
 def residual(
-    R, r, psi_dot, psi_ddot,
-    omega, phi_dot, theta_dot, v_O3, a_O3_x, a_O3_y, rolling_D, spin_D,
-    axis_30_point, axis_30_dir, axis_31_point, axis_31_dir, axis_32_point, axis_32_dir,
-):  # fmt: skip
+    R,
+    r,
+    psi_dot,
+    psi_ddot,
+    omega,
+    phi_dot,
+    theta_dot,
+    v_O3,
+    a_O3_x,
+    a_O3_y,
+    rolling_D,
+    spin_D,
+    axis_30_point,
+    axis_30_dir,
+    axis_31_point,
+    axis_31_dir,
+    axis_32_point,
+    axis_32_dir,
+):
     """The four no-slip velocities, the motion of O3, and the three axes, with vectors of space."""
     z = _vector(0.0, 0.0, 1.0)
     O3 = _vector(R + r, 0.0, 0.0)
@@ -397,15 +420,30 @@ def _norm(vector):
 KNOWN = (
     # R = 2 r: the ball turns as fast as the input, backwards, and all ratios are thirds.
     given(R=20, r=10, psi_dot=30, psi_ddot=6).gives(
-        mobility=1, omega=-30, phi_dot=10, theta_dot=20, rho=2 / 3, v_O3=300, a_O3_x=-3000, a_O3_y=60,
-        rolling_D=-30, spin_D=-50,
+        mobility=1,
+        omega=-30,
+        phi_dot=10,
+        theta_dot=20,
+        rho=2 / 3,
+        v_O3=300,
+        a_O3_x=-3000,
+        a_O3_y=60,
+        rolling_D=-30,
+        spin_D=-50,
     ),
     # R = 3 r, input the other way and gaining speed.
     given(R=60, r=20, psi_dot=-80, psi_ddot=-40).gives(
-        omega=120, phi_dot=-30, theta_dot=-60, rho=0.75, v_O3=-2400, a_O3_x=-72000, a_O3_y=-1200,
-        rolling_D=120, spin_D=180,
+        omega=120,
+        phi_dot=-30,
+        theta_dot=-60,
+        rho=0.75,
+        v_O3=-2400,
+        a_O3_x=-72000,
+        a_O3_y=-1200,
+        rolling_D=120,
+        spin_D=180,
     ),
     # A ball bearing of pitch diameter 100 with balls of 20, inner ring driven: its cage turns at
     # (1 - 20/100)/2 of the ring.
     given(R=40, r=10, psi_dot=5, psi_ddot=0).gives(phi_dot=2, a_O3_y=0, theta_dot=4),
-)  # fmt: skip
+)

@@ -1,4 +1,5 @@
-"""Epicyclic train: solution. Seen from the carrier it is an ordinary train: (omega3 - omega4) = r0 (omega1 - omega4)."""
+"""Epicyclic train: solution. Seen from the carrier it is an ordinary train: (omega3 - omega4) = r0 (omega1 -
+omega4)."""
 
 import numpy as np
 
@@ -124,7 +125,8 @@ def torques_added(Gamma_in, Gamma_out):
 
 
 def residual(z1, z2, z3, mode, omega_a, Gamma_in, r0, omega_b, omega24, omega2, Gamma_out, Gamma_fix):
-    """Rolling at both meshes, with the velocities of points in the frame; the forces on a planet and its pin."""
+    """Rolling at both meshes, with the velocities of points in the frame; the forces on a planet and its
+    pin."""
     omega1 = np.where(mode == "sun", 0.0, omega_a)
     omega3 = np.where(mode == "ring", 0.0, np.where(mode == "sun", omega_a, omega_b))
     omega4 = np.where(mode == "carrier", 0.0, omega_b)

@@ -1,4 +1,5 @@
-"""Ordinary gear train: solution. At a mesh the pitch circles roll without slip: speeds are as the inverse of the teeth."""
+"""Ordinary gear train: solution. At a mesh the pitch circles roll without slip: speeds are as the inverse of
+the teeth."""
 
 import numpy as np
 

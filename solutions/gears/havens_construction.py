@@ -17,7 +17,8 @@ _WIDTH = 2 * TOLERANCE_MM
 
 
 def _pose(d, r2, r3, b, theta1):
-    """Unit vectors of the crank and of the guide; distances O4A1 and O4B2; unit vector from B2 to I. From O1, mm."""
+    """Unit vectors of the crank and of the guide; distances O4A1 and O4B2; unit vector from B2 to I. From O1,
+    mm."""
     crank = polar(1.0, theta1)
     arm = d + (r2 + r3) * crank
     along = arm / abs(arm)
@@ -31,7 +32,8 @@ def _images(_pose, r2, r3, omega1):
     v40 = _guide_part(_pose, v10)
     v14 = v10 - v40
     v20 = _of_B2(_pose, v40, v14)
-    # I is on S2, which turns with the guide; projected on B2 I, its velocity would have few digits where that is the crank.
+    # I is on S2, which turns with the guide; projected on B2 I, its velocity would have few digits where that
+    # is the crank.
     omega2 = (v40 / (1j * _pose[1])).real / _pose[2]
     return v10, v40, v14, v14, v20, v10 - 1j * r2 * omega2 * _pose[0]
 
@@ -132,7 +134,8 @@ SYMBOLS = {"rA": "r_A", "l4": r"\ell_4", "l3": r"\ell_3"}
 
 @judge
 def drawing(answers, d, r2, r3, b, theta1, omega1):
-    """Arrows as components on paper, at any scale, each from the student's own ones before it; then what is read off them."""
+    """Arrows as components on paper, at any scale, each from the student's own ones before it; then what is
+    read off them."""
     said = _verdicts(answers, d, r2, r3, b, theta1, omega1)
     of = {"omega4": "v40", "omega3": "v30"}
     # Sums of arrows that are all turned are right from them: those whose direction is laid off tell.
@@ -168,7 +171,8 @@ def _verdicts(answers, d, r2, r3, b, theta1, omega1):
 
 
 def overlay(answers, d, r2, r3, b, theta1, omega1, kv):
-    """The student's arrows over the right ones, all from one point: what slides along the guide, from what turns with it."""
+    """The student's arrows over the right ones, all from one point: what slides along the guide, from what
+    turns with it."""
     pose = _pose(d, r2, r3, b, theta1)
     right = dict(zip(VECTORS, _images(pose, r2, r3, omega1), strict=True))
     drawn = {name: on_paper(*answers[name]) for name in VECTORS if name in answers}
@@ -382,7 +386,14 @@ def residual(d, r2, r3, b, theta1, omega1, kv, v10, v40, v14, v24, v20, v30, ome
 KNOWN = (
     # Crank upright: O4O1A1 is a 3-4-5 triangle; scale 4 mm/s for 1 mm.
     given(d=30, r2=25, r3=15, b=25, theta1=90, omega1=5).gives(
-        kv=5, v10=(-40, 0), v40=(-25.6, 19.2), v14=(-14.4, -19.2), v24=(-14.4, -19.2), v20=(-52.8, 9.6),
-        v30=(-24, 0), omega4=3.2, omega3=8,
+        kv=5,
+        v10=(-40, 0),
+        v40=(-25.6, 19.2),
+        v14=(-14.4, -19.2),
+        v24=(-14.4, -19.2),
+        v20=(-52.8, 9.6),
+        v30=(-24, 0),
+        omega4=3.2,
+        omega3=8,
     ),
-)  # fmt: skip
+)

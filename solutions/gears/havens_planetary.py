@@ -1,6 +1,7 @@
 """Havens planetary gear: solution. The guide follows A1; wheel S2 turns as the guide does, and rolls on S3.
 
-Crank and guide are a slotted mechanism whose frame is O4O1 = d along x; its values come from the numeric core.
+Crank and guide are a slotted mechanism whose frame is O4O1 = d along x; its values come from the numeric
+core.
 """
 
 import math
@@ -21,9 +22,12 @@ from ._havens import *
 UNITS = {"e": "mm"}
 LOOPS = {
     "loop_1": (
-        Vector("d", 0.0), Vector("r2", "theta1"), Vector("r3", "theta1"), Vector("rA", "theta4", -1),
+        Vector("d", 0.0),
+        Vector("r2", "theta1"),
+        Vector("r3", "theta1"),
+        Vector("rA", "theta4", -1),
     ),
-}  # fmt: skip
+}
 EFFECTS = {
     "velocity": ("omega4", "omega2", "v_A1_4", "v_slide", "v_B2_x", "v_B2_y", "omega3", "v_I"),
 }
@@ -242,9 +246,23 @@ def figure(d, r2, r3, b, e, theta1, omega1, theta4, rA, omega4, v_slide, v_B2_x,
 
 
 def residual(
-    d, r2, r3, b, theta1, omega1,
-    theta4, rA, omega4, omega2, v_A1_4, v_slide, v_B2_x, v_B2_y, omega3, v_I,
-):  # fmt: skip
+    d,
+    r2,
+    r3,
+    b,
+    theta1,
+    omega1,
+    theta4,
+    rA,
+    omega4,
+    omega2,
+    v_A1_4,
+    v_slide,
+    v_B2_x,
+    v_B2_y,
+    omega3,
+    v_I,
+):
     """The triangle O4O1A1 and its derivative; B2, I and A1 as points of the one body S2; no slip at I;
     equiprojectivity along B2I."""
     along, crank = np.exp(1j * np.radians(theta4)), np.exp(1j * np.radians(theta1))
@@ -270,20 +288,50 @@ _OF_3_4_5 = math.degrees(math.atan2(4, 3))
 KNOWN = (
     # Crank upright: O4O1A1 is a 3-4-5 triangle.
     given(d=30, r2=25, r3=15, b=25, theta1=90, omega1=5).gives(
-        nature_42="translation", theta4=_OF_3_4_5, rA=50, omega4=3.2, omega2=3.2, v_A1_4=160, v_slide=-120,
-        v_B2_x=-264, v_B2_y=48, omega3=8, v_I=120,
+        nature_42="translation",
+        theta4=_OF_3_4_5,
+        rA=50,
+        omega4=3.2,
+        omega2=3.2,
+        v_A1_4=160,
+        v_slide=-120,
+        v_B2_x=-264,
+        v_B2_y=48,
+        omega3=8,
+        v_I=120,
     ),
     # Crank along the frame, away from O4: nothing slides.
     given(d=20, r2=40, r3=20, b=30, theta1=0, omega1=4).gives(
-        theta4=0, rA=80, omega4=3, v_slide=0, v_B2_x=0, v_B2_y=330, omega3=6, v_I=120,
+        theta4=0,
+        rA=80,
+        omega4=3,
+        v_slide=0,
+        v_B2_x=0,
+        v_B2_y=330,
+        omega3=6,
+        v_I=120,
     ),
     # And towards O4: the pinion happens to stand still.
     given(d=20, r2=40, r3=20, b=30, theta1=180, omega1=4).gives(
-        theta4=180, rA=40, omega4=6, v_slide=0, v_B2_x=0, v_B2_y=-420, omega3=0, v_I=0,
+        theta4=180,
+        rA=40,
+        omega4=6,
+        v_slide=0,
+        v_B2_x=0,
+        v_B2_y=-420,
+        omega3=0,
+        v_I=0,
     ),
     # A guide that swings, at the end of its swing: A1 moves along the slot, S2 only translates.
     given(d=50, r2=20, r3=10, b=10, theta1=180 - _OF_3_4_5, omega1=2).gives(
-        theta4=90 - _OF_3_4_5, rA=40, omega4=0, v_slide=-60, v_A1_4=0, v_B2_x=-48, v_B2_y=-36, omega3=6,
+        theta4=90 - _OF_3_4_5,
+        rA=40,
+        omega4=0,
+        v_slide=-60,
+        v_A1_4=0,
+        v_B2_x=-48,
+        v_B2_y=-36,
+        omega3=6,
         v_I=60,
     ),
-)  # fmt: skip
+)

@@ -1,5 +1,5 @@
-"""A body tipped by a jack: solution. The triangle OBA gives the positions; the loop derived twice, projected along the jack
-and across it, gives the rates one at a time.
+"""A body tipped by a jack: solution. The triangle OBA gives the positions; the loop derived twice, projected
+along the jack and across it, gives the rates one at a time.
 """
 
 from math import pi
@@ -32,8 +32,8 @@ EFFECTS = {
     "acceleration": ("alpha4", "alpha2", "a_G"),
     "coriolis": ("a_coriolis",),
 }
-#: Counted by the tilt of the body; the drive acts along the jack, between cylinder and rod, and its thrust is the moment that
-#: would hold the body alone, times omega4 / L_dot.
+#: Counted by the tilt of the body; the drive acts along the jack, between cylinder and rod, and its thrust is
+#: the moment that would hold the body alone, times omega4 / L_dot.
 MECHANISM = Mechanism(
     ground={"O": 0, "B": lambda xB, yB: xB + 1j * yB},
     bodies=(
@@ -213,16 +213,17 @@ def a_G_tangential_only(c, alpha4):
     return c * abs(alpha4)
 
 
-def polygons(
-    a, c, eta, L, L_dot, L_ddot, theta2, theta4, omega2, omega4, alpha2, alpha4, a_coriolis
-):  # fmt: skip
-    """A_2 is the cylinder's point under A: what the jack gives is laid off first, along it; G turns with A about O."""
+def polygons(a, c, eta, L, L_dot, L_ddot, theta2, theta4, omega2, omega4, alpha2, alpha4, a_coriolis):
+    """A_2 is the cylinder's point under A: what the jack gives is laid off first, along it; G turns with A
+    about O."""
     along, OA, OG = polar(1, theta2), polar(a, theta4), polar(c, theta4 + eta)
     BA = L * along
     return (
         polygon_of_velocities(
             (
-                Side("p_v", "a'", r"\vec{V}_{A/A_2}", L_dot * along, r"\parallel BA", r"\left|\dot{L}\right|"),
+                Side(
+                    "p_v", "a'", r"\vec{V}_{A/A_2}", L_dot * along, r"\parallel BA", r"\left|\dot{L}\right|"
+                ),
                 turning("a'", "a", "A_2", "BA", BA, omega2),
                 turning("p_v", "a", "A", "OA", OA, omega4),
                 turning("p_v", "g", "G", "OG", OG, omega4, r"c\,V_A / a"),
@@ -232,11 +233,19 @@ def polygons(
             (
                 normal("p_a", "a_2'", "A_2", "BA", BA, omega2, "V_{A_2}^2 / L"),
                 Side(
-                    "a_2'", "k'", r"\vec{a}^c_{A/A_2}", 1j * a_coriolis * along, r"\perp BA",
+                    "a_2'",
+                    "k'",
+                    r"\vec{a}^c_{A/A_2}",
+                    1j * a_coriolis * along,
+                    r"\perp BA",
                     r"2 \left|\omega_2\right| V_{A/A_2}",
                 ),
                 Side(
-                    "k'", "k", r"\vec{a}^s_{A/A_2}", L_ddot * along, r"\parallel BA",
+                    "k'",
+                    "k",
+                    r"\vec{a}^s_{A/A_2}",
+                    L_ddot * along,
+                    r"\parallel BA",
                     r"\left|\ddot{L}\right|",
                 ),
                 normal("p_a", "a'", "A", "OA", OA, omega4, "V_A^2 / a"),
@@ -247,7 +256,7 @@ def polygons(
                 Side("p_a", "g", r"\vec{a}_G", (1j * alpha4 - omega4**2) * OG),
             )
         ),
-    )  # fmt: skip
+    )
 
 
 def motion(a, c, eta, theta4, omega4, alpha4):
@@ -280,9 +289,28 @@ def figure(xB, yB, a, L, c, eta, theta4, theta2, omega4, L_dot):
 
 
 def residual(
-    a, xB, yB, L, L_dot, L_ddot, L_min, L_max, c, eta, theta4, yG, theta2, swing, omega4, omega2, alpha4, alpha2,
-    a_coriolis, v_G, a_G,
-):  # fmt: skip
+    a,
+    xB,
+    yB,
+    L,
+    L_dot,
+    L_ddot,
+    L_min,
+    L_max,
+    c,
+    eta,
+    theta4,
+    yG,
+    theta2,
+    swing,
+    omega4,
+    omega2,
+    alpha4,
+    alpha2,
+    a_coriolis,
+    v_G,
+    a_G,
+):
     """The loop and its two derivatives, as complex equations; the body above OB; the ends of the jack."""
     arm, way = a * np.exp(1j * np.radians(theta4)), np.exp(1j * np.radians(theta2))
     foot = xB + 1j * yB

@@ -33,10 +33,13 @@ UNITS = {"A": "1", "side": "1"}
 SYMBOLS = {"side": r"\varepsilon"}
 LOOPS = {
     "loop_1": (
-        Vector("r1", pi / 2), Vector("r2", "theta2"), Vector("r3", "theta3"), Vector("r4", "theta4", -1),
+        Vector("r1", pi / 2),
+        Vector("r2", "theta2"),
+        Vector("r3", "theta3"),
+        Vector("r4", "theta4", -1),
     ),
     "loop_2": (Vector("r4", "theta4"), Vector("r6", 0.0, -1), Vector("r5", "theta5", -1)),
-}  # fmt: skip
+}
 MECHANISM = Mechanism(
     ground={"D": 0, "O": lambda r1: 1j * r1},
     bodies=(
@@ -347,9 +350,24 @@ def r6dd_rod_only(r4, omega4, alpha4, theta4, r5, alpha5, theta5):
 
 
 def polygons(
-    r2, r3, r4, r5, theta2, theta3, theta4, theta5, omega2, omega3, omega4, omega5, r6_dot,
-    alpha3, alpha4, alpha5, r6_ddot,
-):  # fmt: skip
+    r2,
+    r3,
+    r4,
+    r5,
+    theta2,
+    theta3,
+    theta4,
+    theta5,
+    omega2,
+    omega3,
+    omega4,
+    omega5,
+    r6_dot,
+    alpha3,
+    alpha4,
+    alpha5,
+    r6_ddot,
+):
     """Two bars meet at B, then the rod from B to the slider."""
     OA, AB, DB, BP = polar(r2, theta2), polar(r3, theta3), polar(r4, theta4), -polar(r5, theta5)
     return (
@@ -367,9 +385,26 @@ def polygons(
 
 
 def residual(
-    r1, r2, r3, r4, r5, theta2, omega2,
-    theta3, theta4, r6, theta5, omega3, omega4, omega5, r6_dot, alpha3, alpha4, alpha5, r6_ddot,
-):  # fmt: skip
+    r1,
+    r2,
+    r3,
+    r4,
+    r5,
+    theta2,
+    omega2,
+    theta3,
+    theta4,
+    r6,
+    theta5,
+    omega3,
+    omega4,
+    omega5,
+    r6_dot,
+    alpha3,
+    alpha4,
+    alpha5,
+    r6_ddot,
+):
     """Both loop closures and their two derivatives, as complex equations."""
     crank, coupler, rocker, rod = (
         length * np.exp(1j * np.radians(theta))
@@ -404,19 +439,52 @@ KNOWN = (
     # Coupler parallel to the crank: A moves square to it, as B would have to, so the rocker stands still.
     # A = (40, 120), B = (160, 120), slider at (448, 0): triangles 3-4-5 and 5-12-13.
     given(r1=120, r2=40, r3=120, r4=200, r5=312, theta2=0, omega2=9, mode="open").gives(
-        mobility=1, cycles=2, a=9600, b=28800, c=9600, B=-320, C=-57344, theta3=0, theta4=_degrees_of(3, 4),
-        r6=448, theta5=_degrees_of(5, -12), omega3=-3, omega4=0, omega5=0, r6_dot=0, alpha3=48, alpha4=36,
-        alpha5=-20, r6_ddot=-6720,
+        mobility=1,
+        cycles=2,
+        a=9600,
+        b=28800,
+        c=9600,
+        B=-320,
+        C=-57344,
+        theta3=0,
+        theta4=_degrees_of(3, 4),
+        r6=448,
+        theta5=_degrees_of(5, -12),
+        omega3=-3,
+        omega4=0,
+        omega5=0,
+        r6_dot=0,
+        alpha3=48,
+        alpha4=36,
+        alpha5=-20,
+        r6_ddot=-6720,
     ),
     # The same crank, B mirrored in the line AD: B = (-56, 192); the rod is parallel to the coupler.
     given(r1=120, r2=40, r3=120, r4=200, r5=320, theta2=0, omega2=15, mode="crossed").gives(
-        theta3=_degrees_of(3, -4), theta4=_degrees_of(24, -7), r6=200, theta5=_degrees_of(3, -4), omega3=8,
-        omega4=3, omega5=21 / 32, r6_dot=-450,
+        theta3=_degrees_of(3, -4),
+        theta4=_degrees_of(24, -7),
+        r6=200,
+        theta5=_degrees_of(3, -4),
+        omega3=8,
+        omega4=3,
+        omega5=21 / 32,
+        r6_dot=-450,
     ),
     # Crank in line with the frame, coupler and rocker equal: an isosceles triangle, B = (80, 60),
     # whose two sides turn alike.
     given(r1=100, r2=20, r3=100, r4=100, r5=156, theta2=90, omega2=6, mode="open").gives(
-        a=0, b=24000, c=-14400, B=-160, C=-14336, theta3=_degrees_of(-3, 4), theta4=_degrees_of(3, 4), r6=224,
-        theta5=_degrees_of(5, -12), omega3=1, omega4=1, omega5=-5 / 9, r6_dot=-280 / 3,
+        a=0,
+        b=24000,
+        c=-14400,
+        B=-160,
+        C=-14336,
+        theta3=_degrees_of(-3, 4),
+        theta4=_degrees_of(3, 4),
+        r6=224,
+        theta5=_degrees_of(5, -12),
+        omega3=1,
+        omega4=1,
+        omega5=-5 / 9,
+        r6_dot=-280 / 3,
     ),
-)  # fmt: skip
+)

@@ -59,22 +59,37 @@ SYMBOLS = {
 }
 LOOPS = {
     "loop_1": (
-        Vector("r2", "theta2"), Vector("r3", "theta3"),
-        Vector("xC", 0.0, -1), Vector("yC", pi / 2, -1), Vector("r4", "theta4", -1),
+        Vector("r2", "theta2"),
+        Vector("r3", "theta3"),
+        Vector("xC", 0.0, -1),
+        Vector("yC", pi / 2, -1),
+        Vector("r4", "theta4", -1),
     ),
     "loop_2": (
-        Vector("r2", "theta2"), Vector("r6", "theta3", turn="beta"),
-        Vector("xD", 0.0, -1), Vector("yD", pi / 2, -1), Vector("d5", "theta5", -1),
+        Vector("r2", "theta2"),
+        Vector("r6", "theta3", turn="beta"),
+        Vector("xD", 0.0, -1),
+        Vector("yD", pi / 2, -1),
+        Vector("d5", "theta5", -1),
     ),
     "loop_3": (
-        Vector("xD", 0.0), Vector("yD", pi / 2), Vector("r5", "theta5"), Vector("r7", "theta7"),
-        Vector("x8", 0.0, -1), Vector("d3", pi / 2, -1),
+        Vector("xD", 0.0),
+        Vector("yD", pi / 2),
+        Vector("r5", "theta5"),
+        Vector("r7", "theta7"),
+        Vector("x8", 0.0, -1),
+        Vector("d3", pi / 2, -1),
     ),
     "loop_4": (
-        Vector("r2", "theta2"), Vector("r6", "theta3", turn="beta"), Vector("r5", "theta5"), Vector("d5", "theta5", -1),
-        Vector("r7", "theta7"), Vector("x8", 0.0, -1), Vector("d3", pi / 2, -1),
+        Vector("r2", "theta2"),
+        Vector("r6", "theta3", turn="beta"),
+        Vector("r5", "theta5"),
+        Vector("d5", "theta5", -1),
+        Vector("r7", "theta7"),
+        Vector("x8", 0.0, -1),
+        Vector("d3", pi / 2, -1),
     ),
-}  # fmt: skip
+}
 MECHANISM = Mechanism(
     ground={"O": 0, "C": lambda xC, yC: xC + 1j * yC, "D": lambda xD, yD: xD + 1j * yD},
     bodies=(
@@ -197,7 +212,8 @@ def _from_D(xD, yD, r2, theta2, theta5):
 
 
 def _across(_from_D, r6, theta5, theta6):
-    """r6 sin(theta6 - theta5), by the other side of the triangle where AE is far longer and nearly on the bar."""
+    """r6 sin(theta6 - theta5), by the other side of the triangle where AE is far longer and nearly on the
+    bar."""
     return np.where(r6 > 10 * np.hypot(*_from_D), -_from_D[1], r6 * sin(theta6 - theta5))[()]
 
 
@@ -436,12 +452,35 @@ def no_centripetal(d5_ddot, d5, omega5):
 
 
 def polygons(
-    r2, r3, r4, r5, r6, r7, theta2, theta3, theta4, theta5, theta6, theta7, d5,
-    omega2, omega3, omega4, omega5, d5_dot, omega7, x8_dot,
-    alpha3, alpha4, alpha5, d5_ddot, alpha7, x8_ddot,
-):  # fmt: skip
-    """Two bars meet at B; E turns with B about A, and slides on the bar, whose point under it is E_5; the bar's
-    end F carries the rod of the ram."""
+    r2,
+    r3,
+    r4,
+    r5,
+    r6,
+    r7,
+    theta2,
+    theta3,
+    theta4,
+    theta5,
+    theta6,
+    theta7,
+    d5,
+    omega2,
+    omega3,
+    omega4,
+    omega5,
+    d5_dot,
+    omega7,
+    x8_dot,
+    alpha3,
+    alpha4,
+    alpha5,
+    d5_ddot,
+    alpha7,
+    x8_ddot,
+):
+    """Two bars meet at B; E turns with B about A, and slides on the bar, whose point under it is E_5; the
+    bar's end F carries the rod of the ram."""
     OA, AB, CB, AE = polar(r2, theta2), polar(r3, theta3), polar(r4, theta4), polar(r6, theta6)
     DE, DF, FG = polar(d5, theta5), polar(r5, theta5), polar(r7, theta7)
     return (
@@ -497,11 +536,42 @@ def figure(xC, yC, xD, yD, r2, theta2, omega2, r3, theta3, r5, theta5, omega5, r
 
 
 def residual(
-    xC, yC, xD, yD, r2, r3, r4, r5, r6, beta, r7, d3, theta2, omega2, mode,
-    theta3, theta4, theta5, d5, theta7, x8, omega3, omega4, omega5, d5_dot, omega7, x8_dot,
-    alpha3, alpha4, alpha5, d5_ddot, alpha7, x8_ddot,
-):  # fmt: skip
-    """The three loop closures and their two derivatives, as complex equations, and the sides of B, E and G."""
+    xC,
+    yC,
+    xD,
+    yD,
+    r2,
+    r3,
+    r4,
+    r5,
+    r6,
+    beta,
+    r7,
+    d3,
+    theta2,
+    omega2,
+    mode,
+    theta3,
+    theta4,
+    theta5,
+    d5,
+    theta7,
+    x8,
+    omega3,
+    omega4,
+    omega5,
+    d5_dot,
+    omega7,
+    x8_dot,
+    alpha3,
+    alpha4,
+    alpha5,
+    d5_ddot,
+    alpha7,
+    x8_ddot,
+):
+    """The three loop closures and their two derivatives, as complex equations, and the sides of B, E and
+    G."""
     C, D, zero = xC + 1j * yC, xD + 1j * yD, 0 * omega2
     unit = {
         n: np.exp(1j * np.radians(v))
@@ -545,20 +615,76 @@ def _degrees_of(y, x):
 KNOWN = (
     # O-A-B-C a parallelogram: the coupler translates with A. E = (0, 100), DE = (75, 100), DF its double.
     given(
-        xC=100, yC=0, xD=-75, yD=0, r2=40, r3=100, r4=40, r5=250, r6=60, beta=90, r7=130, d3=150, theta2=90,
-        omega2=5, mode="open",
+        xC=100,
+        yC=0,
+        xD=-75,
+        yD=0,
+        r2=40,
+        r3=100,
+        r4=40,
+        r5=250,
+        r6=60,
+        beta=90,
+        r7=130,
+        d3=150,
+        theta2=90,
+        omega2=5,
+        mode="open",
     ).gives(
-        theta3=0, theta4=90, theta5=_degrees_of(4, 3), d5=125, theta7=_degrees_of(-5, 12), x8=195, omega3=0,
-        omega4=5, omega5=1.28, d5_dot=-120, omega7=-1.6, x8_dot=-336, alpha3=0, alpha4=0, alpha5=-2.3424,
-        d5_ddot=-595.2, alpha7=4.592, x8_ddot=145.12,
+        theta3=0,
+        theta4=90,
+        theta5=_degrees_of(4, 3),
+        d5=125,
+        theta7=_degrees_of(-5, 12),
+        x8=195,
+        omega3=0,
+        omega4=5,
+        omega5=1.28,
+        d5_dot=-120,
+        omega7=-1.6,
+        x8_dot=-336,
+        alpha3=0,
+        alpha4=0,
+        alpha5=-2.3424,
+        d5_ddot=-595.2,
+        alpha7=4.592,
+        x8_ddot=145.12,
     ),
     # Crank along OC, ABC a 3-4-5 triangle; AE and the bar upright, E = (30, 50), F = (30, 130).
     given(
-        xC=80, yC=0, xD=30, yD=-50, r2=30, r3=40, r4=30, r5=180, r6=50, beta=_degrees_of(4, 3), r7=100,
-        d3=190, theta2=0, omega2=5, mode="open",
+        xC=80,
+        yC=0,
+        xD=30,
+        yD=-50,
+        r2=30,
+        r3=40,
+        r4=30,
+        r5=180,
+        r6=50,
+        beta=_degrees_of(4, 3),
+        r7=100,
+        d3=190,
+        theta2=0,
+        omega2=5,
+        mode="open",
     ).gives(
-        theta3=_degrees_of(3, 4), theta4=_degrees_of(4, -3), theta5=90, d5=100, theta7=_degrees_of(3, 4),
-        x8=110, omega3=-3, omega4=-3, omega5=-1.5, d5_dot=150, omega7=0, x8_dot=270, alpha3=-18, alpha4=32,
-        alpha5=3, d5_ddot=-225, alpha7=5.0625, x8_ddot=-843.75,
+        theta3=_degrees_of(3, 4),
+        theta4=_degrees_of(4, -3),
+        theta5=90,
+        d5=100,
+        theta7=_degrees_of(3, 4),
+        x8=110,
+        omega3=-3,
+        omega4=-3,
+        omega5=-1.5,
+        d5_dot=150,
+        omega7=0,
+        x8_dot=270,
+        alpha3=-18,
+        alpha4=32,
+        alpha5=3,
+        d5_ddot=-225,
+        alpha7=5.0625,
+        x8_ddot=-843.75,
     ),
-)  # fmt: skip
+)

@@ -1,8 +1,9 @@
 """Toggle press: solution. The angle of the upper bar is what is given, so that nothing is a small difference.
 
-The two bars of the toggle make small angles with the line of the ram; speeds and forces hang on the sine of their sum, which
-keeps its digits down to the dead point of the toggle, where the ram stands still and any force is held without a torque.
-Bars and coupler bear forces along themselves alone: the ram, then the knee B, then the crank balance.
+The two bars of the toggle make small angles with the line of the ram; speeds and forces hang on the sine of
+their sum, which keeps its digits down to the dead point of the toggle, where the ram stands still and any
+force is held without a torque. Bars and coupler bear forces along themselves alone: the ram, then the knee B,
+then the crank balance.
 """
 
 from math import pi
@@ -47,11 +48,14 @@ SYMBOLS = {
 }
 LOOPS = {
     "loop_1": (
-        Vector("xO", 0.0), Vector("yO", pi / 2), Vector("r2", "theta2"), Vector("r3", "theta3"),
+        Vector("xO", 0.0),
+        Vector("yO", pi / 2),
+        Vector("r2", "theta2"),
+        Vector("r3", "theta3"),
         Vector("r4", "theta4", -1),
     ),
     "loop_2": (Vector("r4", "theta4"), Vector("r5", "theta5"), Vector("yC", pi / 2, -1)),
-}  # fmt: skip
+}
 RATES = {"yC": ("v_C", "")}
 EFFECTS = {"advantage": ("mechanical_advantage",), "forces": ("torque", "F_5", "F_4", "F_3", "N_guide")}
 MECHANISM = Mechanism(
@@ -72,7 +76,8 @@ def psi(r4, r5, phi):
     """Of the lower bar: B is as far from the line of the ram by the one bar as by the other."""
     if np.ndim(r4 * sin(phi) - r5) == 0 and abs(r4 * sin(phi)) > r5:
         raise CannotAssemble(
-            f"the lower bar does not reach the line of the ram: B is {abs(r4 * sin(phi)):.6g} from it, the bar is "
+            f"the lower bar does not reach the line of the ram: B is {abs(r4 * sin(phi)):.6g} from it, "
+            "the bar is "
             f"{r5:.6g} long (gap {abs(r4 * sin(phi)) - r5:.3g})"
         )
     return asin(r4 * sin(phi) / r5)
@@ -296,9 +301,31 @@ def figure(xO, yO, r2, r4, theta2, theta4, yC, F_3, F_4, F_5):
 
 
 def residual(
-    xO, yO, r2, r3, r4, r5, phi, A_side, omega2, F, psi, yC, theta2, theta3, v_C, omega3, omega4, omega5,
-    mechanical_advantage, F_5, N_guide, F_4, F_3, torque,
-):  # fmt: skip
+    xO,
+    yO,
+    r2,
+    r3,
+    r4,
+    r5,
+    phi,
+    A_side,
+    omega2,
+    F,
+    psi,
+    yC,
+    theta2,
+    theta3,
+    v_C,
+    omega3,
+    omega4,
+    omega5,
+    mechanical_advantage,
+    F_5,
+    N_guide,
+    F_4,
+    F_3,
+    torque,
+):
     """Both loops and their derivatives, the side of A; ram, knee and crank balance; no power is lost."""
 
     def along(theta):
@@ -331,11 +358,21 @@ def residual(
 _SQUARE = {"xO": -50 - 120, "yO": -50 * 3**0.5 - 40, "r2": 40, "r3": 120, "r4": 100, "A_side": "left"}
 
 KNOWN = (
-    # Two bars at 30 degrees, the coupler level and the crank upright: an equilateral triangle of forces on the knee.
+    # Two bars at 30 degrees, the coupler level and the crank upright: an equilateral triangle of forces on
+    # the knee.
     given(**_SQUARE, r5=100, phi=30, omega2=-3, F=3000).gives(
-        psi=30, yC=-100 * 3**0.5, theta2=90, theta3=0, omega4=2 * 3**0.5 * 0.4, v_C=-80 * 3**0.5,
-        mechanical_advantage=0.5 * 3**0.5, F_5=2000 * 3**0.5, F_4=2000 * 3**0.5, F_3=2000 * 3**0.5,
-        N_guide=-1000 * 3**0.5, torque=-80 * 3**0.5,
+        psi=30,
+        yC=-100 * 3**0.5,
+        theta2=90,
+        theta3=0,
+        omega4=2 * 3**0.5 * 0.4,
+        v_C=-80 * 3**0.5,
+        mechanical_advantage=0.5 * 3**0.5,
+        F_5=2000 * 3**0.5,
+        F_4=2000 * 3**0.5,
+        F_3=2000 * 3**0.5,
+        N_guide=-1000 * 3**0.5,
+        torque=-80 * 3**0.5,
     ),
     # The lower bar at 45 degrees; nothing loads the ram.
     given(**_SQUARE, r5=50 * 2**0.5, phi=30, omega2=-3, F=3000)
@@ -346,4 +383,4 @@ KNOWN = (
     given(xO=-160, yO=-100, r2=40, r3=130, r4=100, r5=80, phi=0, A_side="right", omega2=2, F=5000).gives(
         psi=0, yC=-180, v_C=0, F_5=5000, F_4=5000, F_3=0, N_guide=0, torque=0
     ),
-)  # fmt: skip
+)

@@ -57,18 +57,32 @@ SYMBOLS = {
 }
 LOOPS = {
     "loop_1": (
-        Vector("r2", "theta2"), Vector("r3", "theta3"),
-        Vector("xC", 0.0, -1), Vector("yC", pi / 2, -1), Vector("r4", "theta4", -1),
+        Vector("r2", "theta2"),
+        Vector("r3", "theta3"),
+        Vector("xC", 0.0, -1),
+        Vector("yC", pi / 2, -1),
+        Vector("r4", "theta4", -1),
     ),
     "loop_2": (
-        Vector("xC", 0.0), Vector("yC", pi / 2), Vector("r5", "theta4", turn="beta"), Vector("r6", "theta6"),
-        Vector("xF", 0.0, -1), Vector("yF", pi / 2, -1), Vector("r7", "theta7", -1),
+        Vector("xC", 0.0),
+        Vector("yC", pi / 2),
+        Vector("r5", "theta4", turn="beta"),
+        Vector("r6", "theta6"),
+        Vector("xF", 0.0, -1),
+        Vector("yF", pi / 2, -1),
+        Vector("r7", "theta7", -1),
     ),
     "loop_3": (
-        Vector("r2", "theta2"), Vector("r3", "theta3"), Vector("r4", "theta4", -1), Vector("r5", "theta4", turn="beta"),
-        Vector("r6", "theta6"), Vector("xF", 0.0, -1), Vector("yF", pi / 2, -1), Vector("r7", "theta7", -1),
+        Vector("r2", "theta2"),
+        Vector("r3", "theta3"),
+        Vector("r4", "theta4", -1),
+        Vector("r5", "theta4", turn="beta"),
+        Vector("r6", "theta6"),
+        Vector("xF", 0.0, -1),
+        Vector("yF", pi / 2, -1),
+        Vector("r7", "theta7", -1),
     ),
-}  # fmt: skip
+}
 MECHANISM = Mechanism(
     ground={"O": 0, "C": lambda xC, yC: xC + 1j * yC, "F": lambda xF, yF: xF + 1j * yF},
     bodies=(
@@ -90,7 +104,8 @@ def cycles():
 
 
 def third_loop():
-    """Loop 1 ends with C to O along the frame, loop 2 begins at C and ends with F to C: their sum passes C no more."""
+    """Loop 1 ends with C to O along the frame, loop 2 begins at C and ends with F to C: their sum passes C no
+    more."""
     return "sum"
 
 
@@ -366,9 +381,28 @@ def alpha4_left_out_loop2(omega4, alpha4, omega6, omega7, alpha6, alpha7):
 
 
 def polygons(
-    r2, r3, r4, r5, r6, r7, theta2, theta3, theta4, theta5, theta6, theta7,
-    omega2, omega3, omega4, omega6, omega7, alpha3, alpha4, alpha6, alpha7,
-):  # fmt: skip
+    r2,
+    r3,
+    r4,
+    r5,
+    r6,
+    r7,
+    theta2,
+    theta3,
+    theta4,
+    theta5,
+    theta6,
+    theta7,
+    omega2,
+    omega3,
+    omega4,
+    omega6,
+    omega7,
+    alpha3,
+    alpha4,
+    alpha6,
+    alpha7,
+):
     """Two bars meet at B; D turns with B about C; two bars meet at E."""
     OA, AB, CB, CD = polar(r2, theta2), polar(r3, theta3), polar(r4, theta4), polar(r5, theta5)
     DE, FE = polar(r6, theta6), polar(r7, theta7)
@@ -418,17 +452,47 @@ def figure(xC, yC, xF, yF, r2, theta2, omega2, r4, theta4, omega4, r5, theta5, r
 
 
 def residual(
-    xC, yC, xF, yF, r2, r3, r4, r5, beta, r6, r7, theta2, omega2, mode_1, mode_2,
-    theta3, theta4, theta6, theta7, omega3, omega4, omega6, omega7, alpha3, alpha4, alpha6, alpha7,
-):  # fmt: skip
+    xC,
+    yC,
+    xF,
+    yF,
+    r2,
+    r3,
+    r4,
+    r5,
+    beta,
+    r6,
+    r7,
+    theta2,
+    omega2,
+    mode_1,
+    mode_2,
+    theta3,
+    theta4,
+    theta6,
+    theta7,
+    omega3,
+    omega4,
+    omega6,
+    omega7,
+    alpha3,
+    alpha4,
+    alpha6,
+    alpha7,
+):
     """Both loop closures and their two derivatives, as complex equations, and the sides of B and E."""
     C, F = xC + 1j * yC, xF + 1j * yF
     crank, AB, CB, CD, DE, FE = (
         length * np.exp(1j * np.radians(theta))
         for length, theta in (
-            (r2, theta2), (r3, theta3), (r4, theta4), (r5, theta4 + beta), (r6, theta6), (r7, theta7)
+            (r2, theta2),
+            (r3, theta3),
+            (r4, theta4),
+            (r5, theta4 + beta),
+            (r6, theta6),
+            (r7, theta7),
         )
-    )  # fmt: skip
+    )
 
     def gaps(chain):
         """A closed chain of (vector, rate, acceleration): its derivatives over the sizes of their terms."""
@@ -458,18 +522,66 @@ KNOWN = (
     # Both loops are 3-4-5 triangles over a driver in line with its frame: there the two rods turn alike.
     # A = (30, 0) and B = (62, 24), C = (80, 0); D = (60, 0) and E = (42, 24), F = (10, 0).
     given(
-        xC=80, yC=0, xF=10, yF=0, r2=30, r3=40, r4=30, r5=20, beta=180 - math.degrees(math.atan2(4, -3)),
-        r6=30, r7=40, theta2=0, omega2=5, mode_1="open", mode_2="crossed",
+        xC=80,
+        yC=0,
+        xF=10,
+        yF=0,
+        r2=30,
+        r3=40,
+        r4=30,
+        r5=20,
+        beta=180 - math.degrees(math.atan2(4, -3)),
+        r6=30,
+        r7=40,
+        theta2=0,
+        omega2=5,
+        mode_1="open",
+        mode_2="crossed",
     ).gives(
-        mobility=1, cycles=2, theta3="36.8699", theta4="126.8699", theta6="126.8699", theta7="36.8699",
-        omega3=-3, omega4=-3, omega6=1.2, omega7=1.2, alpha3=-18, alpha4=32, alpha6=-6.08, alpha7=-16.58,
+        mobility=1,
+        cycles=2,
+        theta3="36.8699",
+        theta4="126.8699",
+        theta6="126.8699",
+        theta7="36.8699",
+        omega3=-3,
+        omega4=-3,
+        omega6=1.2,
+        omega7=1.2,
+        alpha3=-18,
+        alpha4=32,
+        alpha6=-6.08,
+        alpha7=-16.58,
     ),
     # Two parallelograms: the plate and the second rocker turn as the crank does, the rods do not turn.
     given(
-        xC=60, yC=80, xF=180, yF=30, r2=40, r3=100, r4=40, r5=30, beta=40, r6=130, r7=30, theta2=20,
-        omega2=-6, mode_1="crossed", mode_2="open",
+        xC=60,
+        yC=80,
+        xF=180,
+        yF=30,
+        r2=40,
+        r3=100,
+        r4=40,
+        r5=30,
+        beta=40,
+        r6=130,
+        r7=30,
+        theta2=20,
+        omega2=-6,
+        mode_1="crossed",
+        mode_2="open",
     ).gives(
-        theta3="53.1301", theta4=20, theta6="-22.6199", theta7=60, omega3=0, omega4=-6, omega6=0, omega7=-6,
-        alpha3=0, alpha4=0, alpha6=0, alpha7=0,
+        theta3="53.1301",
+        theta4=20,
+        theta6="-22.6199",
+        theta7=60,
+        omega3=0,
+        omega4=-6,
+        omega6=0,
+        omega7=-6,
+        alpha3=0,
+        alpha4=0,
+        alpha6=0,
+        alpha7=0,
     ),
-)  # fmt: skip
+)

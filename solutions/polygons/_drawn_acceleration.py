@@ -1,9 +1,9 @@
-"""A drawn acceleration polygon, and mistakes on it: the pole p, the end a of a known acceleration, the end n (b') of the normal
-part of B about A, b where two lines cross.
+"""A drawn acceleration polygon, and mistakes on it: the pole p, the end a of a known acceleration, the end n
+(b') of the normal part of B about A, b where two lines cross.
 
-A solution that takes these has three hidden ones: ``_images``, what is drawn, complex, from that of A to that of B; ``_start``,
-the point where the second line starts; and ``_lines``: of each of the two lines that find b, the point through which it goes
-and its direction, complex.
+A solution that takes these has three hidden ones: ``_images``, what is drawn, complex, from that of A to that
+of B; ``_start``, the point where the second line starts; and ``_lines``: of each of the two lines that find
+b, the point through which it goes and its direction, complex.
 """
 
 import numpy as np

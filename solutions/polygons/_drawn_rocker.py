@@ -1,8 +1,8 @@
-"""The end of a rocker on a drawn acceleration polygon, and mistakes on it: m (b'') is the end of its normal part about the fixed
-pivot, from which the line of the tangential one goes.
+"""The end of a rocker on a drawn acceleration polygon, and mistakes on it: m (b'') is the end of its normal
+part about the fixed pivot, from which the line of the tangential one goes.
 
-A solution that takes these has those of :mod:`_drawn_acceleration`; the third of its ``_images`` is that of m,
-and its ``_start`` is m.
+A solution that takes these has those of :mod:`_drawn_acceleration`; the third of its ``_images`` is that of
+m, and its ``_start`` is m.
 """
 
 import numpy as np

@@ -1,4 +1,5 @@
-"""Beginning of every drawn polygon: the pole p, and the end a of the first vector, which is completely known."""
+"""Beginning of every drawn polygon: the pole p, and the end a of the first vector, which is completely
+known."""
 
 from coursework.marking.drawn_polygons import to_paper, turned
 from coursework.solution import mistake

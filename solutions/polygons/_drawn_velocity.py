@@ -1,8 +1,9 @@
-"""A drawn velocity polygon, and mistakes on it: the pole p, the end a of a known velocity, b where two lines cross.
+"""A drawn velocity polygon, and mistakes on it: the pole p, the end a of a known velocity, b where two lines
+cross.
 
-A solution that takes these has two hidden bundles: ``_images``, the velocities of A and of B, complex; and ``_lines``, the
-directions on which b lies, complex: square to AB, through a, and that of the
-velocity of B, through p.
+A solution that takes these has two hidden bundles: ``_images``, the velocities of A and of B, complex; and
+``_lines``, the directions on which b lies, complex: square to AB, through a, and that of the velocity of B,
+through p.
 """
 
 import numpy as np

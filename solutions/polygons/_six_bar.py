@@ -1,4 +1,5 @@
-"""Six links at an instant: OA, AB and DB as a four-bar linkage whose frame OD points down, then the rod BC to its slider."""
+"""Six links at an instant: OA, AB and DB as a four-bar linkage whose frame OD points down, then the rod BC to
+its slider."""
 
 import numpy as np
 

@@ -151,10 +151,14 @@ def drawing(answers, r1, r2, r3, r4, theta2, omega2, mode):
             "alpha4": Read("b''", "b", lambda v: (v / (1j * rocker)).real, 1 / r4, of_rocker),
         },
         sides={
-            ("p_a", "a"): "a", ("a", "b'"): "n", ("p_a", "b''"): "m", ("b'", "b"): "bt", ("b''", "b"): "ct",
+            ("p_a", "a"): "a",
+            ("a", "b'"): "n",
+            ("p_a", "b''"): "m",
+            ("b'", "b"): "bt",
+            ("b''", "b"): "ct",
         },
         hung=frozenset({"n_on_p", "m_on_a", "bt_on_a", "ct_on_p"}),
-    )  # fmt: skip
+    )
     return verdicts(answers, _polygon(bars, omega2), asked)
 
 
@@ -202,7 +206,14 @@ def residual(r1, r2, r3, r4, theta2, omega2, mode, ka, a, n, m, b, bb_t, pa_b, a
 KNOWN = (
     # Crank along the frame, ABC a 3-4-5 triangle, right-angled at B; both turn at -3 rad/s.
     given(r1=80, r2=30, r3=40, r4=30, theta2=0, omega2=5, mode="open").gives(
-        ka=10, a=(-75, 0), n=(-75 - 28.8, -21.6), m=(16.2, -21.6), alpha3=-18, alpha4=32, b=(-60.6, -79.2),
-        bb_t=72, a_B=30 * (32**2 + 9**2) ** 0.5,
+        ka=10,
+        a=(-75, 0),
+        n=(-75 - 28.8, -21.6),
+        m=(16.2, -21.6),
+        alpha3=-18,
+        alpha4=32,
+        b=(-60.6, -79.2),
+        bb_t=72,
+        a_B=30 * (32**2 + 9**2) ** 0.5,
     ),
-)  # fmt: skip
+)

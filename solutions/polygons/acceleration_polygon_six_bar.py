@@ -1,5 +1,5 @@
-"""Acceleration polygon of six links: solution. The normal parts are known from the velocities; the tangential lines of B meet in b,
-then that of C about B and the guide meet in c."""
+"""Acceleration polygon of six links: solution. The normal parts are known from the velocities; the tangential
+lines of B meet in b, then that of C about B and the guide meet in c."""
 
 import numpy as np
 
@@ -239,11 +239,17 @@ def drawing(answers, r1, r2, r3, r4, r5, theta2, omega2, mode):
             "r6_ddot": Read("p_a", "c", lambda v: v.real, 1.0, sense="a_C_sense"),
         },
         sides={
-            ("p_a", "a"): "a", ("a", "b'"): "n", ("p_a", "b''"): "m", ("b'", "b"): "bt", ("b''", "b"): "ct",
-            ("b", "c'"): "f", ("c'", "c"): "cb", ("p_a", "c"): "pc",
+            ("p_a", "a"): "a",
+            ("a", "b'"): "n",
+            ("p_a", "b''"): "m",
+            ("b'", "b"): "bt",
+            ("b''", "b"): "ct",
+            ("b", "c'"): "f",
+            ("c'", "c"): "cb",
+            ("p_a", "c"): "pc",
         },
         hung=frozenset({"n_on_p", "m_on_a", "bt_on_a", "ct_on_p", "f_on_p", "cb_on_b"}),
-    )  # fmt: skip
+    )
     return verdicts(answers, _polygon(links, rates, _gains(linkage, links, rates, omega2)), asked)
 
 
@@ -265,10 +271,9 @@ def polygons(_links, _rates, _gains, ka):
     return (_polygon(_links, _rates, _gains, ka),)
 
 
-def residual(
-    r1, r2, r3, r4, r5, theta2, omega2, mode, ka, a, n, m, b, f, c, bb_t, pa_c, alpha3, r6_ddot
-):  # fmt: skip
-    """The loop O, A, B, D closed by the law of cosines; rates and accelerations of both loops as linear equations."""
+def residual(r1, r2, r3, r4, r5, theta2, omega2, mode, ka, a, n, m, b, f, c, bb_t, pa_c, alpha3, r6_ddot):
+    """The loop O, A, B, D closed by the law of cosines; rates and accelerations of both loops as linear
+    equations."""
     A = 1j * r1 + r2 * np.exp(1j * np.radians(theta2))
     OA = A - 1j * r1
     corner = np.arccos((abs(A) ** 2 + r3**2 - r4**2) / (2 * abs(A) * r3))

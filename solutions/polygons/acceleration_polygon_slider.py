@@ -1,5 +1,5 @@
-"""Acceleration polygon of a slider-crank: solution. The normal part is known from the velocities; the line of the tangential
-part and that of the acceleration of B meet in b."""
+"""Acceleration polygon of a slider-crank: solution. The normal part is known from the velocities; the line of
+the tangential part and that of the acceleration of B meet in b."""
 
 import numpy as np
 

@@ -1,5 +1,6 @@
-"""Acceleration polygon of a slotted mechanism: solution. A4 of the guide goes round O4; A2, which slides over it, has the Coriolis
-acceleration besides, known from the velocities. The two accelerations of which only the direction is known meet in a4."""
+"""Acceleration polygon of a slotted mechanism: solution. A4 of the guide goes round O4; A2, which slides over
+it, has the Coriolis acceleration besides, known from the velocities. The two accelerations of which only the
+direction is known meet in a4."""
 
 import numpy as np
 
@@ -271,13 +272,19 @@ def drawing(answers, r1, r2, theta2, omega2):
         lengths={"bk": ("a_4", "k"), "nb_t": ("a_4'", "a_4")},
         reads={
             "rA_ddot": Read("a_4", "k", lambda v: (v / along).real, 1.0, sense="sliding_sense"),
-            "alpha4": Read("a_4'", "a_4", lambda v: (v / (1j * guide.arm * along)).real, 1 / guide.arm, whole),
+            "alpha4": Read(
+                "a_4'", "a_4", lambda v: (v / (1j * guide.arm * along)).real, 1 / guide.arm, whole
+            ),
         },
         sides={
-            ("p_a", "a_2"): "a", ("k", "a_2"): "k", ("p_a", "a_4'"): "n", ("a_4", "k"): "s", ("a_4'", "a_4"): "t",
+            ("p_a", "a_2"): "a",
+            ("k", "a_2"): "k",
+            ("p_a", "a_4'"): "n",
+            ("a_4", "k"): "s",
+            ("a_4'", "a_4"): "t",
         },
         hung=frozenset({"k_on_p", "n_on_a", "s_on_a", "t_on_p"}),
-    )  # fmt: skip
+    )
     return verdicts(answers, _polygon(guide, vectors, guide.arm, omega2), asked)
 
 
@@ -320,13 +327,21 @@ def residual(r1, r2, theta2, omega2, ka, a, k, n, b, bk, nb_t, rA_ddot, alpha4):
 
 
 KNOWN = (
-    # Crank square to the frame: O4A is the hypotenuse of a 3-4-5 triangle, of slope 3/4; omega4 = 3.2, sliding at 480.
+    # Crank square to the frame: O4A is the hypotenuse of a 3-4-5 triangle, of slope 3/4; omega4 = 3.2,
+    # sliding at 480.
     given(r1=120, r2=160, theta2=0, omega2=5).gives(
-        ka=50, a=(-80, 0), k=(-80 + 61.44 * 0.6, -61.44 * 0.8), n=(-40.96 * 0.8, -40.96 * 0.6),
-        rA_ddot=-3200 + 2048, alpha4=(2400 - 3072) / 200,
+        ka=50,
+        a=(-80, 0),
+        k=(-80 + 61.44 * 0.6, -61.44 * 0.8),
+        n=(-40.96 * 0.8, -40.96 * 0.6),
+        rA_ddot=-3200 + 2048,
+        alpha4=(2400 - 3072) / 200,
     ),
     # The guide at the end of its swing stands still: no Coriolis term, no normal one.
     given(r1=200, r2=120, theta2=-36.86989764584402, omega2=-4).gives(
-        n=(0, 0), bk=0, rA_ddot=0, alpha4=12,
+        n=(0, 0),
+        bk=0,
+        rA_ddot=0,
+        alpha4=12,
     ),
-)  # fmt: skip
+)

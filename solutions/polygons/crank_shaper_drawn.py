@@ -1,7 +1,8 @@
-"""Crank and slotted lever on paper: solution. P slides along the lever OD, whose end D drives the ram E by the rod DE; each polygon
-finds the lever first, then, by the image of D, the ram.
+"""Crank and slotted lever on paper: solution. P slides along the lever OD, whose end D drives the ram E by
+the rod DE; each polygon finds the lever first, then, by the image of D, the ram.
 
-The accelerations are judged against the velocities that the student has drawn, where these are not the right ones.
+The accelerations are judged against the velocities that the student has drawn, where these are not the right
+ones.
 """
 
 from typing import Any, NamedTuple
@@ -40,8 +41,12 @@ from ._slotted import _guide
 
 UNITS = {"rA": "mm", "sigma": "deg", "stroke": "mm"}
 SYMBOLS = {
-    "rA": "OP", "way": r"\varepsilon_E", "turn_4": r"\varepsilon_4", "side": "s_E", "sigma": r"\sigma",
-}  # fmt: skip
+    "rA": "OP",
+    "way": r"\varepsilon_E",
+    "turn_4": r"\varepsilon_4",
+    "side": "s_E",
+    "sigma": r"\sigma",
+}
 
 
 class _Bars(NamedTuple):
@@ -64,8 +69,8 @@ class _Rates(NamedTuple):
 
 
 class _Terms(NamedTuple):
-    """Accelerations: of P2; Coriolis; of P4, normal then tangential; along the lever; of D; of E about D, normal then
-    tangential; of E. Complex."""
+    """Accelerations: of P2; Coriolis; of P4, normal then tangential; along the lever; of D; of E about D,
+    normal then tangential; of E. Complex."""
 
     of_P2: Any
     coriolis: Any
@@ -320,14 +325,20 @@ def _asked_v(bars):
         points={"p": "p_v", "a": "p_2", "b": "p_4", "d": "d", "e": "e"},
         lengths={"pv_b": ("p_v", "p_4"), "pv_e": ("p_v", "e")},
         reads={
-            "omega4": Read("p_v", "p_4", lambda v: (v / (1j * bars.arm)).real, 1 / abs(bars.arm), sense="value_sense"),
+            "omega4": Read(
+                "p_v", "p_4", lambda v: (v / (1j * bars.arm)).real, 1 / abs(bars.arm), sense="value_sense"
+            ),
             "v_C": Read("p_v", "e", lambda v: v.real, 1.0, sense="ram_sense"),
         },
         sides={
-            ("p_v", "p_2"): "vector", ("p_4", "p_2"): "line", ("p_v", "p_4"): "line", ("p_v", "d"): "image",
-            ("d", "e"): "line", ("p_v", "e"): "line",
+            ("p_v", "p_2"): "vector",
+            ("p_4", "p_2"): "line",
+            ("p_v", "p_4"): "line",
+            ("p_v", "d"): "image",
+            ("d", "e"): "line",
+            ("p_v", "e"): "line",
         },
-    )  # fmt: skip
+    )
 
 
 def _asked_a():
@@ -337,11 +348,18 @@ def _asked_a():
         lengths={"pa_e": ("p_a", "e")},
         reads={"a_C": Read("p_a", "e", lambda v: v.real, 1.0, sense="ram_sense")},
         sides={
-            ("p_a", "p_2"): "vector", ("k", "p_2"): "coriolis", ("p_a", "p_4'"): "vector", ("p_4'", "p_4"): "line",
-            ("p_4", "k"): "line", ("p_a", "d"): "image", ("d", "e'"): "vector", ("e'", "e"): "line", ("p_a", "e"): "line",
+            ("p_a", "p_2"): "vector",
+            ("k", "p_2"): "coriolis",
+            ("p_a", "p_4'"): "vector",
+            ("p_4'", "p_4"): "line",
+            ("p_4", "k"): "line",
+            ("p_a", "d"): "image",
+            ("d", "e'"): "vector",
+            ("e'", "e"): "line",
+            ("p_a", "e"): "line",
         },
         hung=frozenset({"line_on_a2", "line_on_q", "line_on_d2"}),
-    )  # fmt: skip
+    )
 
 
 def _velocities(bars, rates, scale=None):
@@ -589,9 +607,37 @@ def figure(r1, r2, r4, r5, h, omega2):
 
 
 def residual(
-    r1, r2, r4, r5, h, theta2, omega2, kv, a, b, d, e, pv_b, pv_e, omega4, v_C,
-    ka, a2, k, n, b2, d2, m, e2, pa_e, a_C, alpha, beta, Q, mechanical_advantage,
-):  # fmt: skip
+    r1,
+    r2,
+    r4,
+    r5,
+    h,
+    theta2,
+    omega2,
+    kv,
+    a,
+    b,
+    d,
+    e,
+    pv_b,
+    pv_e,
+    omega4,
+    v_C,
+    ka,
+    a2,
+    k,
+    n,
+    b2,
+    d2,
+    m,
+    e2,
+    pa_e,
+    a_C,
+    alpha,
+    beta,
+    Q,
+    mechanical_advantage,
+):
     """The arm and the rod as vectors, differentiated; crank square to lever at the ends of the arc alpha."""
     crank = r2 * np.exp(1j * np.radians(theta2))
     arm = 1j * r1 + crank
@@ -636,14 +682,28 @@ def residual(
 
 
 KNOWN = (
-    # The notes' lengths and rate; the crank half the frame, so that the lever swings by 30 degrees either side. Crank and lever
-    # upright: the lever turns at a third of the crank's rate, and D goes left as E does.
+    # The notes' lengths and rate; the crank half the frame, so that the lever swings by 30 degrees either
+    # side. Crank and lever upright: the lever turns at a third of the crank's rate, and D goes left as E
+    # does.
     given(r1=210, r2=105, r4=420, r5=165, h=420, theta2=90, omega2=9.42).gives(
-        kv=20, a=(-49.455, 0), b=(-49.455, 0), d=(-65.94, 0), e=(-65.94, 0), omega4=3.14, v_C=-1318.8,
-        alpha=240, beta=120, Q=2, mechanical_advantage=0.75,
+        kv=20,
+        a=(-49.455, 0),
+        b=(-49.455, 0),
+        d=(-65.94, 0),
+        e=(-65.94, 0),
+        omega4=3.14,
+        v_C=-1318.8,
+        alpha=240,
+        beta=120,
+        Q=2,
+        mechanical_advantage=0.75,
     ),
     # Crank level: O, C, P a 3-4-5 triangle, the rod level too. omega4 = 9/25 omega2.
     given(r1=160, r2=120, r4=400, r5=200, h=320, theta2=0, omega2=5).gives(
-        omega4=1.8, v_C=-576, alpha="277.1808", beta="82.8192", mechanical_advantage=600 / 576,
+        omega4=1.8,
+        v_C=-576,
+        alpha="277.1808",
+        beta="82.8192",
+        mechanical_advantage=600 / 576,
     ),
-)  # fmt: skip
+)

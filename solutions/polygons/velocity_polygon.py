@@ -1,4 +1,5 @@
-"""Velocity polygon of a four-bar linkage: solution. A, whose velocity is known, and B, which is on two bars."""
+"""Velocity polygon of a four-bar linkage: solution. A, whose velocity is known, and B, which is on two
+bars."""
 
 import numpy as np
 
@@ -125,7 +126,8 @@ def polygons(r1, r2, r3, r4, theta2, omega2, mode, kv):
 
 
 def residual(r1, r2, r3, r4, theta2, omega2, mode, kv, a, b, ab, pv_b, v_B, omega3, omega4):
-    """The loop, closed by the law of cosines; b from a and from the pole by the rates; lengths by Pythagoras."""
+    """The loop, closed by the law of cosines; b from a and from the pole by the rates; lengths by
+    Pythagoras."""
     A = r2 * np.exp(1j * np.radians(theta2))
     AC = r1 - A
     corner = np.arccos((abs(AC) ** 2 + r3**2 - r4**2) / (2 * abs(AC) * r3))

@@ -1,4 +1,5 @@
-"""Velocity polygon of six links: solution. B is on two bars, as in a four-bar linkage; C is on the rod and on its guide."""
+"""Velocity polygon of six links: solution. B is on two bars, as in a four-bar linkage; C is on the rod and on
+its guide."""
 
 import numpy as np
 
@@ -10,8 +11,11 @@ from ._drawn_velocity import *
 from ._six_bar import _linkage, _links, _rates
 
 SYMBOLS = {
-    "turn_3": r"\varepsilon_3", "turn_4": r"\varepsilon_4", "turn_5": r"\varepsilon_5", "way_C": r"\varepsilon_C",
-}  # fmt: skip
+    "turn_3": r"\varepsilon_3",
+    "turn_4": r"\varepsilon_4",
+    "turn_5": r"\varepsilon_5",
+    "way_C": r"\varepsilon_C",
+}
 
 
 def _images(_links, _rates):
@@ -182,16 +186,24 @@ def drawing(answers, r1, r2, r3, r4, r5, theta2, omega2, mode):
         points={"p": "p_v", "a": "a", "b": "b", "c": "c"},
         lengths={"ab": ("a", "b"), "pv_b": ("p_v", "b"), "bc": ("b", "c"), "pv_c": ("p_v", "c")},
         reads={
-            "omega3": Read("a", "b", lambda v: (v / (1j * coupler)).real, 1 / r3, {absolute: ("p_v", "b", 1 / r3)}),
+            "omega3": Read(
+                "a", "b", lambda v: (v / (1j * coupler)).real, 1 / r3, {absolute: ("p_v", "b", 1 / r3)}
+            ),
             "omega4": Read("p_v", "b", lambda v: (v / (1j * rocker)).real, 1 / r4),
-            "omega5": Read("b", "c", lambda v: (v / (1j * rod)).real, 1 / r5, {absolute: ("p_v", "c", 1 / r5)}),
+            "omega5": Read(
+                "b", "c", lambda v: (v / (1j * rod)).real, 1 / r5, {absolute: ("p_v", "c", 1 / r5)}
+            ),
             "r6_dot": Read("p_v", "c", lambda v: v.real, 1.0, sense="V_C_sense"),
         },
         sides={
-            ("p_v", "a"): "a", ("a", "b"): "ba", ("p_v", "b"): "vb", ("b", "c"): "cb", ("p_v", "c"): "vc",
+            ("p_v", "a"): "a",
+            ("a", "b"): "ba",
+            ("p_v", "b"): "vb",
+            ("b", "c"): "cb",
+            ("p_v", "c"): "vc",
         },
         hung=frozenset({"ba_on_p", "cb_on_a"}),
-    )  # fmt: skip
+    )
     return verdicts(answers, _polygon(links, _rates(linkage, links, omega2)), asked)
 
 
@@ -214,7 +226,7 @@ def polygons(_links, _rates, kv):
 
 def residual(
     r1, r2, r3, r4, r5, theta2, omega2, mode, kv, a, b, c, ab, pv_b, bc, pv_c, omega3, omega4, omega5, r6_dot
-):  # fmt: skip
+):
     """The loop O, A, B, D closed by the law of cosines; b from a and from the pole, c from b by the rates."""
     A = 1j * r1 + r2 * np.exp(1j * np.radians(theta2))
     corner = np.arccos((abs(A) ** 2 + r3**2 - r4**2) / (2 * abs(A) * r3))

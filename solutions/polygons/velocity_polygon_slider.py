@@ -1,4 +1,5 @@
-"""Velocity polygon of a slider-crank: solution. A, whose velocity is known, and B, which the guide keeps on its line."""
+"""Velocity polygon of a slider-crank: solution. A, whose velocity is known, and B, which the guide keeps on
+its line."""
 
 import numpy as np
 

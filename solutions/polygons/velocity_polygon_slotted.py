@@ -1,5 +1,5 @@
-"""Velocity polygon of a slotted mechanism: solution. A2 of the crank, whose velocity is known, and A4 of the guide, over which it
-slides along the slot."""
+"""Velocity polygon of a slotted mechanism: solution. A2 of the crank, whose velocity is known, and A4 of the
+guide, over which it slides along the slot."""
 
 import numpy as np
 

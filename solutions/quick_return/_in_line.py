@@ -15,7 +15,8 @@ from coursework.figures import (
 
 
 def _in_line(r2, e, x1, x2, anticlockwise):
-    """The two positions in line, at the abscissas x1 (folded) and x2 (stretched), and the crank's longer arc."""
+    """The two positions in line, at the abscissas x1 (folded) and x2 (stretched), and the crank's longer
+    arc."""
     C1, C2 = complex(x1, e), complex(x2, e)
     folded, stretched = atan2(e, x1) + 180, atan2(e, x2)
     A1, A2 = polar(r2, folded), polar(r2, stretched)

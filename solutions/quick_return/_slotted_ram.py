@@ -17,9 +17,12 @@ from coursework.solution import stable
 LOOPS = {
     "loop_1": (Vector("r1", pi / 2), Vector("r2", "theta2"), Vector("rA", "theta4", -1)),
     "loop_2": (
-        Vector("r4", "theta4"), Vector("r5", "theta5"), Vector("xC", 0.0, -1), Vector("h", pi / 2, -1),
+        Vector("r4", "theta4"),
+        Vector("r5", "theta5"),
+        Vector("xC", 0.0, -1),
+        Vector("h", pi / 2, -1),
     ),
-}  # fmt: skip
+}
 RATES = {"xC": ("v_C", "")}
 MECHANISM = Mechanism(
     ground={"O4": 0, "O2": lambda r1: 1j * r1},

@@ -1,4 +1,5 @@
-"""The acceleration of a ram that a slotted guide drives, the crank at a constant rate: whether the guide turns or swings."""
+"""The acceleration of a ram that a slotted guide drives, the crank at a constant rate: whether the guide
+turns or swings."""
 
 from coursework.degrees import polar, sin
 from coursework.figures.polygons import (
@@ -53,9 +54,7 @@ def a_C_sign(a_C):
     return -a_C
 
 
-def polygons(
-    r2, theta2, omega2, rA, theta4, rA_dot, omega4, alpha4, r4, p, q, omega5, alpha5, v_C, a_C
-):  # fmt: skip
+def polygons(r2, theta2, omega2, rA, theta4, rA_dot, omega4, alpha4, r4, p, q, omega5, alpha5, v_C, a_C):
     """The crank pin is A_2, A_4 the point of the guide under it; P is farther along the guide."""
     crank, along = polar(r2, theta2), polar(1, theta4)
     sliding_gain = (-(omega2**2) * crank / along).real + rA * omega4**2

@@ -1,7 +1,7 @@
 """A slotted guide that swings, and the ram that it drives: how far each goes in a turn of the crank.
 
-The ram turns back at the ends of the guide's swing, where the guide touches the circle of A and stands square to
-the crank. Only where the rod lines up with the guide inside the swing would it turn back there too.
+The ram turns back at the ends of the guide's swing, where the guide touches the circle of A and stands square
+to the crank. Only where the rod lines up with the guide inside the swing would it turn back there too.
 """
 
 from typing import Any, NamedTuple
@@ -30,7 +30,8 @@ def _to_the_contact(r1, r2):
 
 
 def _turn(r1, r2, r4, r5, h):
-    """The stroke between the extreme positions, at the ends of the swing or where rod and guide are in line."""
+    """The stroke between the extreme positions, at the ends of the swing or where rod and guide are in
+    line."""
     alone = isinstance(r1 + r2 + r4 + r5 + h, float)
     cosine = _to_the_contact(r1, r2) / r1
     rise = h - r4 * cosine

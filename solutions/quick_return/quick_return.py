@@ -33,27 +33,58 @@ from coursework.solution import formula, given, mistake, stable
 from ._strokes import *
 
 UNITS = {
-    "xC_max": "mm", "xC_min": "mm", "OB": "mm", "DOB": "deg", "AOB": "deg", "phi": "deg", "B_turn": "1",
-    "A_turn": "1", "theta2_turns": "deg", "theta4_far": "deg", "theta4_near": "deg", "xC_far": "mm",
-    "xC_near": "mm", "DOB_far": "deg", "DOB_near": "deg", "yB": "mm", "alpha4": "rad/s^2",
+    "xC_max": "mm",
+    "xC_min": "mm",
+    "OB": "mm",
+    "DOB": "deg",
+    "AOB": "deg",
+    "phi": "deg",
+    "B_turn": "1",
+    "A_turn": "1",
+    "theta2_turns": "deg",
+    "theta4_far": "deg",
+    "theta4_near": "deg",
+    "xC_far": "mm",
+    "xC_near": "mm",
+    "DOB_far": "deg",
+    "DOB_near": "deg",
+    "yB": "mm",
+    "alpha4": "rad/s^2",
     "alpha5": "rad/s^2",
-}  # fmt: skip
+}
 SYMBOLS = {
-    "OB": "OB", "DOB": r"\angle DOB", "AOB": r"\angle AOB", "phi": r"\varphi", "B_turn": r"\varepsilon_B",
-    "A_turn": r"\varepsilon_A", "theta4_far": r"\theta_{4+}", "theta4_near": r"\theta_{4-}",
-    "xC_far": r"x_{C+}", "xC_near": r"x_{C-}", "DOB_far": r"\angle DOB_{+}", "DOB_near": r"\angle DOB_{-}",
-    "yB": "y_B", "theta2_turns": r"\theta_{2,\mathrm{ext}}", "xC_max": r"x_{C,\mathrm{max}}",
+    "OB": "OB",
+    "DOB": r"\angle DOB",
+    "AOB": r"\angle AOB",
+    "phi": r"\varphi",
+    "B_turn": r"\varepsilon_B",
+    "A_turn": r"\varepsilon_A",
+    "theta4_far": r"\theta_{4+}",
+    "theta4_near": r"\theta_{4-}",
+    "xC_far": r"x_{C+}",
+    "xC_near": r"x_{C-}",
+    "DOB_far": r"\angle DOB_{+}",
+    "DOB_near": r"\angle DOB_{-}",
+    "yB": "y_B",
+    "theta2_turns": r"\theta_{2,\mathrm{ext}}",
+    "xC_max": r"x_{C,\mathrm{max}}",
     "xC_min": r"x_{C,\mathrm{min}}",
-}  # fmt: skip
+}
 LOOPS = {
     "loop_1": (
-        Vector("r2", "theta2"), Vector("r3", "theta3"), Vector("r1", "theta1", -1), Vector("r4", "theta4", -1),
+        Vector("r2", "theta2"),
+        Vector("r3", "theta3"),
+        Vector("r1", "theta1", -1),
+        Vector("r4", "theta4", -1),
     ),
     "loop_2": (
-        Vector("r1", "theta1"), Vector("r4", "theta4"), Vector("r5", "theta5"),
-        Vector("xC", 0.0, -1), Vector("h", math.pi / 2, -1),
+        Vector("r1", "theta1"),
+        Vector("r4", "theta4"),
+        Vector("r5", "theta5"),
+        Vector("xC", 0.0, -1),
+        Vector("h", math.pi / 2, -1),
     ),
-}  # fmt: skip
+}
 RATES = {"xC": ("v_C", "a_C")}
 EFFECTS = {"advantage": ("mechanical_advantage",)}
 MECHANISM = Mechanism(
@@ -89,7 +120,8 @@ def DOB(r1, r4, OB):
 
 @formula(r"\arccos \left(\frac{<r2>^2 + <OB>^2 - <r3>^2}{2 \times <r2> \times <OB>}\right)")
 def AOB(r2, r3, angle_OAB, OB):
-    """Angle at O of triangle OAB; a distance OB that is not that of the data (given, or a student's) counts."""
+    """Angle at O of triangle OAB; a distance OB that is not that of the data (given, or a student's)
+    counts."""
     return from_radians(corner_beside(r2, r3, Degrees(angle_OAB), OB))
 
 
@@ -284,7 +316,8 @@ def _longer_arc(theta2_turns, _linkage):
     times = _linkage.times_turned()
     if isinstance(times, int) and times != 2:
         raise Undefined(
-            f"C turns back {times} times a turn, not twice: the rod lines up with the rocker within its swing, "
+            f"C turns back {times} times a turn, not twice: the rod lines up with the rocker within "
+            "its swing, "
             "and one stroke out and one back are not two arcs of crank; only the stroke exists"
         )
     arc = abs(wrap(theta2_turns[..., 0] - theta2_turns[..., 1]))
@@ -382,7 +415,8 @@ def advantage_angular(omega2, omega4):
 def polygons(
     r2, r3, r4, r5, theta2, theta3, theta4, theta5, omega2, omega3, omega4, omega5, v_C, a_C, alpha4, alpha5
 ):
-    """Two bars meet at B, then the rod from B to the piston; the coupler's own acceleration is what is left."""
+    """Two bars meet at B, then the rod from B to the piston; the coupler's own acceleration is what is
+    left."""
     OA, AB, DB, BC = polar(r2, theta2), polar(r3, theta3), polar(r4, theta4), polar(r5, theta5)
     alpha3 = (((1j * alpha4 - omega4**2) * DB + omega2**2 * OA) / AB).imag
     return (
@@ -400,10 +434,37 @@ def polygons(
 
 
 def residual(
-    r1, theta1, r2, r3, r4, r5, h, angle_OAB, omega2, B_side, A_side,
-    theta2, theta3, theta4, xC, theta5, omega3, omega4, omega5, v_C, a_C,
-    alpha4, alpha5, alpha, beta, Q, T, t_advance, t_return, mechanical_advantage,
-):  # fmt: skip
+    r1,
+    theta1,
+    r2,
+    r3,
+    r4,
+    r5,
+    h,
+    angle_OAB,
+    omega2,
+    B_side,
+    A_side,
+    theta2,
+    theta3,
+    theta4,
+    xC,
+    theta5,
+    omega3,
+    omega4,
+    omega5,
+    v_C,
+    a_C,
+    alpha4,
+    alpha5,
+    alpha,
+    beta,
+    Q,
+    T,
+    t_advance,
+    t_return,
+    mechanical_advantage,
+):
     """Both loops with their derivatives, the angle OAB and the two sides, and the times of the strokes."""
 
     def vector(length, theta):
@@ -443,21 +504,59 @@ def residual(
 KNOWN = (
     # O-A-B is a 3-4-5 triangle with A on the x axis and B above it, B-C another: all by hand.
     given(
-        r1=72, theta1=0, r2=30, r3=40, r4=58, r5=50, h=10, omega2=1, angle_OAB=90, B_side="left",
+        r1=72,
+        theta1=0,
+        r2=30,
+        r3=40,
+        r4=58,
+        r5=50,
+        h=10,
+        omega2=1,
+        angle_OAB=90,
+        B_side="left",
         A_side="right",
     ).gives(
-        theta2=0, theta3=90, theta4="136.3972", xC=70, theta5="-36.8699", omega3=-5 / 7, omega4=-5 / 7,
-        omega5=-0.75, v_C=85 / 14, alpha4=0, a_C=150 / 7 - 45 / 2 + 0.75 * (1000 / 49 - 135 / 8),
-        T=2 * math.pi, mechanical_advantage=84 / 17,
+        theta2=0,
+        theta3=90,
+        theta4="136.3972",
+        xC=70,
+        theta5="-36.8699",
+        omega3=-5 / 7,
+        omega4=-5 / 7,
+        omega5=-0.75,
+        v_C=85 / 14,
+        alpha4=0,
+        a_C=150 / 7 - 45 / 2 + 0.75 * (1000 / 49 - 135 / 8),
+        T=2 * math.pi,
+        mechanical_advantage=84 / 17,
     ),
     # r1^2 + r2^2 = r3^2 + r4^2: both extreme positions of B are in line with O, and the strokes last alike.
     given(
-        r1=80, theta1=0, r2=10, r3=70, r4=40, r5=100, h=0, omega2=3, angle_OAB=90, B_side="left",
+        r1=80,
+        theta1=0,
+        r2=10,
+        r3=70,
+        r4=40,
+        r5=100,
+        h=0,
+        omega2=3,
+        angle_OAB=90,
+        B_side="left",
         A_side="left",
     ).gives(alpha=180, beta=180, Q=1, stroke=17.5 + 8500**0.5 - 9156.25**0.5, t_advance=math.pi / 3),
-    # Crank and coupler in line make the triangles 50-70-80, with 60 degrees at O, and 90-70-80, with cosine 2/3.
+    # Crank and coupler in line make the triangles 50-70-80, with 60 degrees at O, and 90-70-80, with cosine
+    # 2/3.
     given(
-        r1=80, theta1=30, r2=20, r3=70, r4=70, r5=300, h=100, omega2=-2, angle_OAB=100, B_side="left",
+        r1=80,
+        theta1=30,
+        r2=20,
+        r3=70,
+        r4=70,
+        r5=300,
+        h=100,
+        omega2=-2,
+        angle_OAB=100,
+        B_side="left",
         A_side="left",
     ).gives(alpha="191.8103", beta="168.1897", T=math.pi, Q=191.810314895778592 / 168.189685104221401),
-)  # fmt: skip
+)

@@ -1,8 +1,8 @@
 """Slider-crank to be designed: solution.
 
-O sees the two points C1 and C2 where the piston turns back at distances r3 - r2 and r3 + r2, and under the angle phi
-by which the slow stroke exceeds half a turn of the crank. In the triangle O C1 C2 the side C1 C2 is the stroke and
-the height on it is |e|: two relations for three lengths, so that one of them is free.
+O sees the two points C1 and C2 where the piston turns back at distances r3 - r2 and r3 + r2, and under the
+angle phi by which the slow stroke exceeds half a turn of the crank. In the triangle O C1 C2 the side C1 C2 is
+the stroke and the height on it is |e|: two relations for three lengths, so that one of them is free.
 """
 
 import numpy as np
@@ -135,7 +135,8 @@ def residual(stroke, Q, alpha, r2, r3, e, mode):
 
 
 def _leans(r2, stroke, Q):
-    """Sine of the rod's inclination for another crank of the same stroke and ratio, by the triangle O C1 C2."""
+    """Sine of the rod's inclination for another crank of the same stroke and ratio, by the triangle O C1
+    C2."""
     angle = np.pi * (Q - 1) / (Q + 1)
     # Product of the sides at O from the area, their squares from the law of cosines.
     product = (stroke**2 - 4 * r2**2) / (2 * (1 - np.cos(angle)))

@@ -249,7 +249,8 @@ def figure(r2, e, omega2, x1, x2):
 
 
 def residual(r2, r3, e, theta2, omega2, xC, v_C, omega3, stroke, alpha, beta, Q, t_advance, t_return):
-    """Loop closure and its derivative; both dead positions, reached from each other by the arc alpha; times."""
+    """Loop closure and its derivative; both dead positions, reached from each other by the arc alpha;
+    times."""
     crank = r2 * np.exp(1j * np.radians(theta2))
     rod = xC + 1j * e - crank
     far = (r3 + r2) * np.exp(1j * np.arcsin(e / (r3 + r2)))
@@ -273,7 +274,8 @@ def residual(r2, r3, e, theta2, omega2, xC, v_C, omega3, stroke, alpha, beta, Q,
 _ROOT3 = 3**0.5
 
 KNOWN = (
-    # Stretched a 60-144-156 triangle, folded a 60-80-100 one; upright, C is 32 above A and the rod in translation.
+    # Stretched a 60-144-156 triangle, folded a 60-80-100 one; upright, C is 32 above A and the rod in
+    # translation.
     given(r2=28, r3=128, e=60, theta2=90, omega2=5).gives(
         xC=(96 * 160) ** 0.5,
         v_C=-140,

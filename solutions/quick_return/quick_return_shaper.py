@@ -1,8 +1,8 @@
 """Shaper: solution.
 
-The slotted mechanism gives the guide's direction and rate; the point P of the guide carries the rod to the ram.
-The ram turns back at the ends of the guide's swing, where the guide touches the circle of A and stands square to
-the crank. Only where the rod lines up with the guide inside the swing would it turn back there too.
+The slotted mechanism gives the guide's direction and rate; the point P of the guide carries the rod to the
+ram. The ram turns back at the ends of the guide's swing, where the guide touches the circle of A and stands
+square to the crank. Only where the rod lines up with the guide inside the swing would it turn back there too.
 """
 
 import math
@@ -133,9 +133,26 @@ def figure(r1, r2, r4, r5, h, omega2, sigma):
 
 
 def residual(
-    r1, r2, r4, r5, h, theta2, omega2, rA, theta4, omega4, omega5, xC, v_C,
-    stroke, alpha, beta, Q, t_advance, t_return,
-):  # fmt: skip
+    r1,
+    r2,
+    r4,
+    r5,
+    h,
+    theta2,
+    omega2,
+    rA,
+    theta4,
+    omega4,
+    omega5,
+    xC,
+    v_C,
+    stroke,
+    alpha,
+    beta,
+    Q,
+    t_advance,
+    t_return,
+):
     """Both loops and their derivatives, crank square to guide at the ends of the arc alpha, and the times."""
     crank = r2 * np.exp(1j * np.radians(theta2))
     along = np.exp(1j * np.radians(theta4))
@@ -166,7 +183,8 @@ def residual(
 
 
 KNOWN = (
-    # The course's slotted mechanism, where A and the guide are; the crank is half the frame: 30 degrees either side.
+    # The course's slotted mechanism, where A and the guide are; the crank is half the frame: 30 degrees
+    # either side.
     given(r1=228.6, r2=114.3, r4=400, r5=200, h=380, theta2=135, omega2=1).gives(
         rA="319.80", theta4="104.64", sigma=30, alpha=240, beta=120, Q=2, stroke=400
     ),
@@ -182,6 +200,7 @@ KNOWN = (
     given(r1=250, r2=150, r4=500, r5=130, h=400, theta2=-36.86989764584402, omega2=-7).gives(
         rA=200, xC=430, v_C=0, stroke=600, alpha="253.7398", beta="106.2602"
     ),
-    # The rod lines up with the guide before the right end of the swing: the ram goes farther than at that end.
+    # The rod lines up with the guide before the right end of the swing: the ram goes farther than at that
+    # end.
     given(r1=100, r2=60, r4=200, r5=100, h=256, theta2=90, omega2=1).gives(stroke=92 + 24464**0.5),
 )

@@ -1,9 +1,9 @@
 """Whitworth's quick return: solution.
 
 The slotted mechanism gives the guide's direction and rate; the guide is then the crank of a slider-crank. The
-ram turns back where guide and rod are in line: at C2, the far end, stretched, and at C1, the near end, folded.
-Between these two directions of the guide the crank turns by more than half a turn on the side where A is far
-from O4, and by less on the other.
+ram turns back where guide and rod are in line: at C2, the far end, stretched, and at C1, the near end,
+folded. Between these two directions of the guide the crank turns by more than half a turn on the side where A
+is far from O4, and by less on the other.
 """
 
 import math
@@ -222,9 +222,26 @@ def figure(r1, r2, r4, h, omega2, x1, x2, phi1, phi2, psi1, psi2):
 
 
 def residual(
-    r1, r2, r4, r5, h, theta2, omega2, rA, theta4, omega4, omega5, xC, v_C,
-    stroke, alpha, beta, Q, t_advance, t_return,
-):  # fmt: skip
+    r1,
+    r2,
+    r4,
+    r5,
+    h,
+    theta2,
+    omega2,
+    rA,
+    theta4,
+    omega4,
+    omega5,
+    xC,
+    v_C,
+    stroke,
+    alpha,
+    beta,
+    Q,
+    t_advance,
+    t_return,
+):
     """Both loops, their derivatives, the two dead positions and the arc of crank between them; times."""
     crank = r2 * np.exp(1j * np.radians(theta2))
     along = np.exp(1j * np.radians(theta4))
@@ -262,7 +279,8 @@ def residual(
 _LINE = {"r1": 50, "r2": 100, "r4": 60, "r5": 100, "h": 0}
 
 KNOWN = (
-    # A straight above O2: the guide upright, P-C a 3-4-5 triangle; on the strokes the angles at A are 30 degrees.
+    # A straight above O2: the guide upright, P-C a 3-4-5 triangle; on the strokes the angles at A are 30
+    # degrees.
     given(**_LINE, theta2=90, omega2=3).gives(
         rA=150,
         theta4=90,

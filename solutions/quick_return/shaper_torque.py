@@ -1,9 +1,10 @@
-"""Shaper that cuts: the crank's torque by the power that the ram takes, and the flywheel that evens out the turn.
+"""Shaper that cuts: the crank's torque by the power that the ram takes, and the flywheel that evens out the
+turn.
 
-The cutting force acts on the working stroke alone, on which the guide turns the same way as the crank, and takes the same
-work of every turn. Where the torque equals its mean, the flywheel turns from storing to giving and back: these two
-crank angles are zeros of a smooth function of the whole turn, refined to neighbouring doubles for any number of
-variants at once.
+The cutting force acts on the working stroke alone, on which the guide turns the same way as the crank, and
+takes the same work of every turn. Where the torque equals its mean, the flywheel turns from storing to giving
+and back: these two crank angles are zeros of a smooth function of the whole turn, refined to neighbouring
+doubles for any number of variants at once.
 """
 
 from dataclasses import replace
@@ -132,7 +133,8 @@ def _crossing(low, high, *lengths):
 
 
 def _crossings(r1, r2, r4, r5, h, _turn):
-    """The two crank angles at which the torque equals its mean, degrees from -90 to 270, along a last axis."""
+    """The two crank angles at which the torque equals its mean, degrees from -90 to 270, along a last
+    axis."""
     lengths = np.broadcast_arrays(r1, r2, r4, r5, h)
     flat = [np.ravel(np.asarray(length, dtype=float)) for length in lengths]
     found = from_radians(
@@ -179,7 +181,8 @@ def xC_fall(r4, r5, h, theta4_fall):
 
 
 def _way_of_the_ram(r1, r2, r4, r5, h, _crossings):
-    """From one crossing to the other, from the difference of the two crank pins, which loses nothing beside r1."""
+    """From one crossing to the other, from the difference of the two crank pins, which loses nothing beside
+    r1."""
     crank = polar(r2, np.moveaxis(_crossings, -1, 0))
     arm, moved = 1j * r1 + crank[0], crank[1] - crank[0]
     turn = np.arctan2(cross(arm, moved), dot(arm, arm + moved))
@@ -292,10 +295,31 @@ def figure(r1, r2, r4, r5, h, F, mean_torque, theta_rise, theta_fall):
 
 
 def residual(
-    r1, r2, r4, r5, h, theta2, omega2, F, delta, rA, theta4, omega4, xC, v_C,
-    torque, work, mean_torque, power, theta_rise, theta_fall, excess, J,
-):  # fmt: skip
-    """Both loops and their derivatives; the powers; the torque at its mean, by differences; the flywheel's energy."""
+    r1,
+    r2,
+    r4,
+    r5,
+    h,
+    theta2,
+    omega2,
+    F,
+    delta,
+    rA,
+    theta4,
+    omega4,
+    xC,
+    v_C,
+    torque,
+    work,
+    mean_torque,
+    power,
+    theta_rise,
+    theta_fall,
+    excess,
+    J,
+):
+    """Both loops and their derivatives; the powers; the torque at its mean, by differences; the flywheel's
+    energy."""
 
     def ram(theta):
         arm = 1j * r1 + r2 * np.exp(1j * np.radians(theta))

@@ -1,4 +1,5 @@
-"""Instant centres of a slider-crank: solution. Through a centre at infinity pass the lines perpendicular to the guide.
+"""Instant centres of a slider-crank: solution. Through a centre at infinity pass the lines perpendicular to
+the guide.
 
 I13 is above or below B on the line of the crank, I24 above or below O on the line of the rod.
 """

@@ -1,6 +1,8 @@
-"""Shaking force of a slider-crank: solution. What the frame feels is minus the masses times their accelerations.
+"""Shaking force of a slider-crank: solution. What the frame feels is minus the masses times their
+accelerations.
 
-The masses at A and B have the rod's mass and centre of mass, so that its force is theirs; its moment of inertia differs.
+The masses at A and B have the rod's mass and centre of mass, so that its force is theirs; its moment of
+inertia differs.
 """
 
 import numpy as np
@@ -47,7 +49,8 @@ def mc(mA, k, mB, r2, rc):
 
 
 @formula(
-    r"\frac{\left(<mA> \times <r2> - <mc> \times <rc>\right) \times <omega2>^2 \times \cos <theta2>}{1000} + <F1> + <F2>"
+    r"\frac{\left(<mA> \times <r2> - <mc> \times <rc>\right) \times <omega2>^2 \times \cos "
+    r"<theta2>}{1000} + <F1> + <F2>"
 )
 @stable(lambda k, F1, F2, mA, rc: (1 - k) * F1 + F2)
 def X(mA, r2, mc, rc, omega2, theta2, F1, F2):
@@ -139,7 +142,8 @@ def figure(r2, r3, theta2, rc, X, Y, F1, F2):
 
 
 def residual(r2, r3, s3, m2, m3, m4, k, rc, theta2, omega2, mA, mB, F1, F2, mc, X, Y):
-    """The rod's mass and centre of mass; second derivatives of the places of all masses, by their Fourier series."""
+    """The rod's mass and centre of mass; second derivatives of the places of all masses, by their Fourier
+    series."""
     turn = np.arange(8) * np.pi / 4
     angle = np.radians(theta2)
     order = np.fft.fftfreq(8, 1 / 8)

@@ -1,7 +1,8 @@
 """Slider-crank: solution. The rod's vector is what is left from the crank pin to the piston's line.
 
 Its two projections p and q carry everything: sin theta3 = p / r3, cos theta3 = q / r3. The root q and the
-accelerations are taken from the numeric core, which keeps their digits where the rod is hardly longer than the crank.
+accelerations are taken from the numeric core, which keeps their digits where the rod is hardly longer than
+the crank.
 """
 
 from math import pi
@@ -72,7 +73,8 @@ def omega3(r2, omega2, theta2, q):
 
 
 @formula(
-    r"-<r2> \times <omega2> \times \sin <theta2> + <r2> \times <omega2> \times \cos <theta2> \times \tan <theta3>"
+    r"-<r2> \times <omega2> \times \sin <theta2> + <r2> \times <omega2> \times \cos <theta2> \times "
+    r"\tan <theta3>"
 )
 def r1_dot(r2, omega2, theta2, p, omega3):
     """Velocity of the piston, positive to the right."""
@@ -216,29 +218,68 @@ _ROOT3 = 3**0.5
 KNOWN = (
     # Crank upright: a 3-4-5 triangle, the rod in translation at this instant.
     given(r2=30, r3=50, theta2=90, omega2=8, kv=4, ka=40).gives(
-        theta3="-36.8699", r1=40, omega3=0, r1_dot=-240, alpha3=48, r1_ddot=1440, pv_a=60, pv_b=60, ab=0,
-        pa_a=48, ab_n=0, bb_t=60, pa_b=36,
+        theta3="-36.8699",
+        r1=40,
+        omega3=0,
+        r1_dot=-240,
+        alpha3=48,
+        r1_ddot=1440,
+        pv_a=60,
+        pv_b=60,
+        ab=0,
+        pa_a=48,
+        ab_n=0,
+        bb_t=60,
+        pa_b=36,
     ),
     # Outer dead centre: crank and rod in line turn opposite ways.
     given(r2=40, r3=120, theta2=0, omega2=-6).gives(
-        theta3=0, r1=160, omega3=2, r1_dot=0, alpha3=0, r1_ddot=-1920,
+        theta3=0,
+        r1=160,
+        omega3=2,
+        r1_dot=0,
+        alpha3=0,
+        r1_ddot=-1920,
     ),
     # Inner dead centre.
     given(r2=40, r3=120, theta2=180, omega2=6).gives(
-        theta3=0, r1=80, omega3=2, r1_dot=0, alpha3=0, r1_ddot=960,
+        theta3=0,
+        r1=80,
+        omega3=2,
+        r1_dot=0,
+        alpha3=0,
+        r1_ddot=960,
     ),
     # Rod and crank equal: an isosceles triangle, r1 = 2 r2 cos theta2.
     given(r2=100, r3=100, theta2=60, omega2=5).gives(
-        theta3=-60, r1=100, omega3=-5, r1_dot=-500 * _ROOT3, alpha3=0, r1_ddot=-2500,
+        theta3=-60,
+        r1=100,
+        omega3=-5,
+        r1_dot=-500 * _ROOT3,
+        alpha3=0,
+        r1_ddot=-2500,
     ),
     # A is 10 above O and the line 20 below: the rod falls by 30, a 3-4-5 triangle again.
     given(r2=20, r3=50, e=-20, theta2=30, omega2=4, kv=2, ka=10).gives(
-        theta3="-36.8699", r1=40 + 10 * _ROOT3, omega3=-_ROOT3, r1_dot=-40 - 30 * _ROOT3, alpha3=1.75,
-        r1_ddot=-160 * _ROOT3 - 67.5, pv_a=40, pv_b=20 + 15 * _ROOT3, ab=25 * _ROOT3, pa_a=32, ab_n=15,
-        bb_t=8.75, pa_b=16 * _ROOT3 + 6.75,
+        theta3="-36.8699",
+        r1=40 + 10 * _ROOT3,
+        omega3=-_ROOT3,
+        r1_dot=-40 - 30 * _ROOT3,
+        alpha3=1.75,
+        r1_ddot=-160 * _ROOT3 - 67.5,
+        pv_a=40,
+        pv_b=20 + 15 * _ROOT3,
+        ab=25 * _ROOT3,
+        pa_a=32,
+        ab_n=15,
+        bb_t=8.75,
+        pa_b=16 * _ROOT3 + 6.75,
     ),
     # The same place, the crank starting from rest.
     given(r2=20, r3=50, e=-20, theta2=30, omega2=0, alpha2=8).gives(
-        omega3=0, r1_dot=0, alpha3=-2 * _ROOT3, r1_ddot=-80 - 60 * _ROOT3,
+        omega3=0,
+        r1_dot=0,
+        alpha3=-2 * _ROOT3,
+        r1_ddot=-80 - 60 * _ROOT3,
     ),
-)  # fmt: skip
+)

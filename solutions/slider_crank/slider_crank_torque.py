@@ -200,7 +200,8 @@ def M2(applied):
 
 
 @formula(
-    r"-\frac{<s3> \times <m3>}{\num{1000}} \times \left(<q> \times \left(\num{9.81} + \frac{<a_G_y>}{\num{1000}}\right)"
+    r"-\frac{<s3> \times <m3>}{\num{1000}} \times \left(<q> \times \left(\num{9.81} + "
+    r"\frac{<a_G_y>}{\num{1000}}\right)"
     r" - <p> \times \frac{<a_G_x>}{\num{1000}}\right) - <J3> \times <alpha3>"
 )
 def M_A(applied):
@@ -360,10 +361,35 @@ def polygons(r2, theta2, omega2, alpha2, s3, p, q, omega3, r1_dot, alpha3, r1_dd
 
 
 def residual(
-    r2, r3, e, theta2, omega2, alpha2, s3, m3, J3, m4, J2, F, f, theta3, r1, omega3, r1_dot, alpha3, r1_ddot,
-    N_guide, R_A_x, R_A_y, torque, R_A, R_B, R_O,
-):  # fmt: skip
-    """The closed loop and its derivatives; rod and piston together, the piston alone, the crank alone, about O."""
+    r2,
+    r3,
+    e,
+    theta2,
+    omega2,
+    alpha2,
+    s3,
+    m3,
+    J3,
+    m4,
+    J2,
+    F,
+    f,
+    theta3,
+    r1,
+    omega3,
+    r1_dot,
+    alpha3,
+    r1_ddot,
+    N_guide,
+    R_A_x,
+    R_A_y,
+    torque,
+    R_A,
+    R_B,
+    R_O,
+):
+    """The closed loop and its derivatives; rod and piston together, the piston alone, the crank alone, about
+    O."""
     crank, rod = r2 * np.exp(1j * np.radians(theta2)), r3 * np.exp(1j * np.radians(theta3))
     of_A, of_B = (1j * alpha2 - omega2**2) * crank, (1j * alpha3 - omega3**2) * rod
     position, velocity = crank + rod - r1 - 1j * e, 1j * (omega2 * crank + omega3 * rod) - r1_dot
@@ -430,8 +456,19 @@ KNOWN = (
 # A crank spun up from rest but for a nudge: some turns, and the inertia of the rod felt in each.
 ACCURACY = Study(
     given={
-        "r2": 150, "r3": 420, "e": 30, "theta2": 20, "omega2": 4, "alpha2": 0,
-        "s3": 0.35, "m3": 12, "J3": 0.3, "m4": 8, "J2": 0.3, "F": 0, "f": 0.2,
+        "r2": 150,
+        "r3": 420,
+        "e": 30,
+        "theta2": 20,
+        "omega2": 4,
+        "alpha2": 0,
+        "s3": 0.35,
+        "m3": 12,
+        "J3": 0.3,
+        "m4": 8,
+        "J2": 0.3,
+        "F": 0,
+        "f": 0.2,
     },
     motion=Motion(effort=3.0, duration=2.0),
-)  # fmt: skip
+)

@@ -1,6 +1,7 @@
 """Cam with a roller follower: solution. All follows from the lift and its derivatives by the cam angle.
 
-The instant centre I of cam and follower is on the horizontal through O, at the distance s' from O, and on the common normal.
+The instant centre I of cam and follower is on the horizontal through O, at the distance s' from O, and on the
+common normal.
 """
 
 import numpy as np
@@ -26,13 +27,36 @@ from coursework.quantities import columns
 from coursework.solution import Moving, formula, given, mistake, stable
 
 UNITS = {
-    "TURN": "deg", "u": "1", "way": "1", "f0": "1", "f1": "1", "f2": "1", "f3": "1", "b": "rad",
-    "s1": "mm", "s2": "mm", "s3": "mm", "d": "mm", "CI": "mm", "x_K": "mm", "y_K": "mm",
-}  # fmt: skip
+    "TURN": "deg",
+    "u": "1",
+    "way": "1",
+    "f0": "1",
+    "f1": "1",
+    "f2": "1",
+    "f3": "1",
+    "b": "rad",
+    "s1": "mm",
+    "s2": "mm",
+    "s3": "mm",
+    "d": "mm",
+    "CI": "mm",
+    "x_K": "mm",
+    "y_K": "mm",
+}
 SYMBOLS = {
-    "way": r"\varepsilon", "f0": "f", "f1": "f'", "f2": "f''", "f3": "f'''", "b": r"\beta_{\mathrm{rad}}",
-    "s1": "s'", "s2": "s''", "s3": "s'''", "CI": "CI", "x_K": "x_K", "y_K": "y_K",
-}  # fmt: skip
+    "way": r"\varepsilon",
+    "f0": "f",
+    "f1": "f'",
+    "f2": "f''",
+    "f3": "f'''",
+    "b": r"\beta_{\mathrm{rad}}",
+    "s1": "s'",
+    "s2": "s''",
+    "s3": "s'''",
+    "CI": "CI",
+    "x_K": "x_K",
+    "y_K": "y_K",
+}
 EFFECTS = {"position": ("s", "phi"), "velocity": ("v",), "acceleration": ("a",)}
 
 TURN = 360
@@ -353,10 +377,9 @@ def _by_series(law, x):
     return found
 
 
-def residual(
-    law, h, beta, delta, theta, omega, Rb, Rr, e, s, v, a, j, phi, rho, rho_c, K
-):  # fmt: skip
-    """The pitch curve in the plane of the cam and its two derivatives: velocities, its normal, its curvature, and K beside it."""
+def residual(law, h, beta, delta, theta, omega, Rb, Rr, e, s, v, a, j, phi, rho, rho_c, K):
+    """The pitch curve in the plane of the cam and its two derivatives: velocities, its normal, its curvature,
+    and K beside it."""
     down = theta > beta
     radians, way = np.radians(beta), np.where(down, -1.0, 1.0)
     lift, *rates = _by_series(law, np.where(down, 2 * beta + delta - theta, theta) / beta)
@@ -388,15 +411,40 @@ KNOWN = (
         ends="acceleration_jumps", s=10, v=40, a=0, j=-640
     ),
     # A quarter of the rise, half of the speed in the middle; a hollow cam, the normal at 1 to 2.
-    given(law="parabolic", h=16, beta=_RADIAN, delta=30, theta=_RADIAN / 4, omega=3, Rb=24, Rr=6, e=0, R2=20).gives(
-        s=2, v=48, a=576, jump=1152, phi=float(np.degrees(np.arctan(0.5))), rho=-(1280**1.5) / 512, shape="concave"
+    given(
+        law="parabolic", h=16, beta=_RADIAN, delta=30, theta=_RADIAN / 4, omega=3, Rb=24, Rr=6, e=0, R2=20
+    ).gives(
+        s=2,
+        v=48,
+        a=576,
+        jump=1152,
+        phi=float(np.degrees(np.arctan(0.5))),
+        rho=-(1280**1.5) / 512,
+        shape="concave",
     ),
     # Halfway down, O, C and I a 3-4-5 triangle.
     given(
-        law="polynomial_345", h=16, beta=_RADIAN, delta=30, theta=1.5 * _RADIAN + 30, omega=1, Rb=20, Rr=12, e=0, R2=40
+        law="polynomial_345",
+        h=16,
+        beta=_RADIAN,
+        delta=30,
+        theta=1.5 * _RADIAN + 30,
+        omega=1,
+        Rb=20,
+        Rr=12,
+        e=0,
+        R2=40,
     ).gives(
-        ends="jerk_jumps", s=8, v=-30, a=0, j=480, phi=float(np.degrees(np.arctan(0.75))), rho=125000 / 3400,
-        x_K=-7.2, y_K=30.4, shape="undercut",
+        ends="jerk_jumps",
+        s=8,
+        v=-30,
+        a=0,
+        j=480,
+        phi=float(np.degrees(np.arctan(0.75))),
+        rho=125000 / 3400,
+        x_K=-7.2,
+        y_K=30.4,
+        shape="undercut",
     ),
     # Three quarters of the rise, the offset as large as the slope: the follower is lifted along its line.
     given(
@@ -405,4 +453,4 @@ KNOWN = (
     given(law="polynomial_4567", h=32, beta=_RADIAN, delta=30, theta=0.5 * _RADIAN, omega=2).gives(
         ends="jerk_begins_at_zero", s=16, v=140, a=0, j=-13440
     ),
-)  # fmt: skip
+)

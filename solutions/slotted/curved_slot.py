@@ -1,8 +1,9 @@
 """A crank pin in the curved slot of a lever: solution.
 
-Seen from the lever the pin goes round the centre C of the slot, so positions are those of the four-bar linkage O, A, C, D; there
-is no bar AC. The formulas compose the motions of the pin and of the lever's point under it, along the slot's tangent and normal;
-their values come from the numeric core of the four-bar linkage, which keeps its digits near a dead point.
+Seen from the lever the pin goes round the centre C of the slot, so positions are those of the four-bar
+linkage O, A, C, D; there is no bar AC. The formulas compose the motions of the pin and of the lever's point
+under it, along the slot's tangent and normal; their values come from the numeric core of the four-bar
+linkage, which keeps its digits near a dead point.
 """
 
 import numpy as np
@@ -30,9 +31,12 @@ UNITS = {"AD": "mm", "phi": "deg", "psi": "deg", "side": "1"}
 SYMBOLS = {"AD": "AD", "phi": r"\varphi", "psi": r"\psi", "side": r"\varepsilon"}
 LOOPS = {
     "loop_1": (
-        Vector("r2", "theta2"), Vector("rho", "theta3"), Vector("r1", 0.0, -1), Vector("d", "theta4", -1),
+        Vector("r2", "theta2"),
+        Vector("rho", "theta3"),
+        Vector("r1", 0.0, -1),
+        Vector("d", "theta4", -1),
     ),
-}  # fmt: skip
+}
 EFFECTS = {
     "velocity": ("omega4", "v_rel", "v_A4"),
     "acceleration": ("alpha4", "a_rel_t", "a_rel_n"),
@@ -95,7 +99,8 @@ def _across(side, _lever):
 
 
 def _rate_of_sliding(r1, r2, omega2, theta2, d, v_rel, rho, _across, _lever):
-    """The derivative of v_rel = -r1 r2 omega2 sin(theta2) / (d sin(theta4 - theta3)), in which no large terms cancel."""
+    """The derivative of v_rel = -r1 r2 omega2 sin(theta2) / (d sin(theta4 - theta3)), in which no large terms
+    cancel."""
     turning = v_rel**2 * np.cos(_lever.transmission_angle) / rho
     return (turning - r1 * r2 * omega2**2 * cos(theta2) / d) / _across
 
@@ -262,7 +267,11 @@ def polygons(r1, r2, rho, theta2, theta3, omega2, omega4, v_rel, alpha4, a_rel_t
             crank_a("A", "OA", OA, omega2),
             (
                 Side(
-                    "k", "a", r"\vec{a}^c_{A/A_4}", polar(a_coriolis, theta3), r"\parallel AC",
+                    "k",
+                    "a",
+                    r"\vec{a}^c_{A/A_4}",
+                    polar(a_coriolis, theta3),
+                    r"\parallel AC",
                     r"2 \left|\omega_4\right| V_{A/A_4}",
                 ),
                 normal("k'", "k", "A/A_4", "AC", CA, v_rel / rho, r"V_{A/A_4}^2 / \rho"),
@@ -271,7 +280,7 @@ def polygons(r1, r2, rho, theta2, theta3, omega2, omega4, v_rel, alpha4, a_rel_t
                 tangential("a_4", "k'", "A/A_4", "AC", CA, a_rel_t / rho),
             ),
         ),
-    )  # fmt: skip
+    )
 
 
 def figure(r1, r2, theta2, omega2, rho, theta3, tau, omega4, v_rel):
@@ -299,10 +308,26 @@ def figure(r1, r2, theta2, omega2, rho, theta3, tau, omega4, v_rel):
 
 
 def residual(
-    r1, r2, d, rho, theta2, omega2, mode, theta3, theta4, tau, omega4, v_A4, v_rel, a_rel_n, a_coriolis, alpha4,
+    r1,
+    r2,
+    d,
+    rho,
+    theta2,
+    omega2,
+    mode,
+    theta3,
+    theta4,
+    tau,
+    omega4,
+    v_A4,
+    v_rel,
+    a_rel_n,
+    a_coriolis,
+    alpha4,
     a_rel_t,
-):  # fmt: skip
-    """The pin in the lever's own frame stays on the circle of the slot; both compositions of motions, as complex equations."""
+):
+    """The pin in the lever's own frame stays on the circle of the slot; both compositions of motions, as
+    complex equations."""
     A = r2 * np.exp(1j * np.radians(theta2))
     lever, normal, along = (np.exp(1j * np.radians(x)) for x in (theta4, theta3, tau))
     from_D = A - r1
@@ -325,16 +350,32 @@ def residual(
 KNOWN = (
     # A parallelogram: crank and lever turn alike, the radius AC keeps its direction, the pin slides steadily.
     given(r1=100, r2=50, rho=100, d=50, theta2=90, omega2=2, mode="open").gives(
-        theta3=0, theta4=90, tau=-90, omega4=2, v_rel=-200, a_rel_n=400, a_coriolis=-800, alpha4=0, a_rel_t=0,
+        theta3=0,
+        theta4=90,
+        tau=-90,
+        omega4=2,
+        v_rel=-200,
+        a_rel_n=400,
+        a_coriolis=-800,
+        alpha4=0,
+        a_rel_t=0,
         v_A4=100 * 5**0.5,
     ),
     # Crank along the frame, ACD a 3-4-5 triangle: the pin is at the end of its way in the slot.
     given(r1=80, r2=30, rho=40, d=30, theta2=0, omega2=5, mode="open").gives(
-        theta3="36.8699", theta4="126.8699", tau="-53.1301", omega4=-3, v_rel=0, v_A4=150, a_rel_n=0,
-        a_coriolis=0, alpha4=32, a_rel_t=-2000,
+        theta3="36.8699",
+        theta4="126.8699",
+        tau="-53.1301",
+        omega4=-3,
+        v_rel=0,
+        v_A4=150,
+        a_rel_n=0,
+        a_coriolis=0,
+        alpha4=32,
+        a_rel_t=-2000,
     ),
     # Its mirror image.
     given(r1=80, r2=30, rho=40, d=30, theta2=0, omega2=5, mode="crossed").gives(
         theta3="-36.8699", theta4="-126.8699", tau="-126.8699", omega4=-3, alpha4=-32, a_rel_t=2000
     ),
-)  # fmt: skip
+)

@@ -1,6 +1,8 @@
-"""Cam with a flat-faced follower: solution. All follows from the lift and its two derivatives by the cam angle.
+"""Cam with a flat-faced follower: solution. All follows from the lift and its two derivatives by the cam
+angle.
 
-The formulas are those of the rise; they hold over the whole turn, with the share of the rise that the follower has at each angle.
+The formulas are those of the rise; they hold over the whole turn, with the share of the rise that the
+follower has at each angle.
 """
 
 from math import pi
@@ -25,8 +27,13 @@ UNITS = {
     "s2_c": "mm",
 }
 SYMBOLS = {
-    "b": r"\beta_{\mathrm{rad}}", "s2": r"s''", "w": "w", "u_c": "u_c", "s_c": "s_c", "s2_c": r"s''_c",
-}  # fmt: skip
+    "b": r"\beta_{\mathrm{rad}}",
+    "s2": r"s''",
+    "w": "w",
+    "u_c": "u_c",
+    "s_c": "s_c",
+    "s2_c": r"s''_c",
+}
 EFFECTS = {"position": ("s", "q"), "velocity": ("v",), "acceleration": ("a",)}
 
 DWELL, TURN = 40, 360
@@ -67,7 +74,8 @@ def s(h, u):
 @formula(r"\frac{30 \times <h> \times \left(<u>^2 - 2 \times <u>^3 + <u>^4\right)}{<b>}")
 @stable(lambda h, b, u, _place: _place[1] * h * rise_345(u)[1] / b)
 def q(h, u, b, _place):
-    """The slope of the lift, by the angle in radians: the point of contact is so far from the follower's line."""
+    """The slope of the lift, by the angle in radians: the point of contact is so far from the follower's
+    line."""
     return 30 * h * (u**2 - 2 * u**3 + u**4) / b * _place[1]
 
 
@@ -223,7 +231,8 @@ def figure(h, beta, b, Rb, theta, s, q, rho, theta_c):
 
 
 def residual(h, beta, Rb, rho_min, theta, omega, s, v, a, q, q_max, rho, theta_c, Rb_min):
-    """The law by its degree and its ends; the cam's own point slides along the face; the flattest place by its neighbours."""
+    """The law by its degree and its ends; the cam's own point slides along the face; the flattest place by
+    its neighbours."""
     radians = np.radians(beta)
 
     def law(angle):

@@ -1,4 +1,5 @@
-"""Assour groups: solution. Take the driver away, then the smallest sets that their pairs hold, one after another."""
+"""Assour groups: solution. Take the driver away, then the smallest sets that their pairs hold, one after
+another."""
 
 from functools import lru_cache
 
@@ -169,8 +170,8 @@ def figure(joints):
 
 
 def residual(_graph, driver, groups):
-    """Every body but frame and driver in one group; each group held by its pairs, three conditions a body halved
-    into pairs, and no part of it held alone."""
+    """Every body but frame and driver in one group; each group held by its pairs, three conditions a body
+    halved into pairs, and no part of it held alone."""
 
     def wrong(graph, pair, found):
         placed, seen = set(pair), []

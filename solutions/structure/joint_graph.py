@@ -1,4 +1,5 @@
-"""The joint graph: solution. Each pair of the scheme is an edge; vertices, edges and cycles are counted on it."""
+"""The joint graph: solution. Each pair of the scheme is an edge; vertices, edges and cycles are counted on
+it."""
 
 from coursework.quantities.columns import each
 from coursework.solution import given, mistake
@@ -110,7 +111,8 @@ def figure(joints):
 
 
 def residual(joints, graph, N, L, gamma):
-    """The text taken apart again: its joints are the records', and its edges close as many cycles as are counted."""
+    """The text taken apart again: its joints are the records', and its edges close as many cycles as are
+    counted."""
 
     def wrong(records, text, N, L, gamma):
         left = [(set(r["between"]), r["kind"]) for r in JointGraph.of(records).records()]
@@ -135,16 +137,17 @@ def _known(figure, **found):
 
 
 KNOWN = (
-    _known(
-        "figure_3", graph="1-2 revolute, 1-4 revolute, 2-3 revolute, 3-4 revolute", N=4, L=4, gamma=1
-    ),
+    _known("figure_3", graph="1-2 revolute, 1-4 revolute, 2-3 revolute, 3-4 revolute", N=4, L=4, gamma=1),
     _known("figure_6_cam", graph="1-2 revolute, 1-3 prismatic, 2-3 higher", N=3, L=3, gamma=1),
     # The notes print 7 - 5 + 1 = 3 cycles: they leave the frame out of N.
     _known("figure_13", N=6, L=7, gamma=2),
     _known("figure_14", N=8, L=10, gamma=3),
     # Three bodies on one pivot.
     _known(
-        "figure_27", N=6, L=7, gamma=2,
+        "figure_27",
+        N=6,
+        L=7,
+        gamma=2,
         graph="1-2 revolute, 1-4 revolute, 1-6 prismatic, 2-3 revolute, 3-4-5 revolute, 5-6 revolute",
     ),
-)  # fmt: skip
+)

@@ -1,7 +1,7 @@
 """Words and rules of the course: the right cases, and a named mistake for each wrong case that has a remark.
 
-``vocabulary.toml`` gives the right cases. A section ``mistake QUESTION_CASE`` of the texts beside it is the remark to who
-chose that case.
+``vocabulary.toml`` gives the right cases. A section ``mistake QUESTION_CASE`` of the texts beside it is the
+remark to who chose that case.
 """
 
 import tomllib
@@ -47,7 +47,11 @@ def residual():
 
 KNOWN = (
     given().gives(
-        shortest_frame="two_cranks", shortest_beside="crank_rocker", shortest_opposite="two_rockers",
-        two_slides="angle", class_engine="II", four_legs="one",
+        shortest_frame="two_cranks",
+        shortest_beside="crank_rocker",
+        shortest_opposite="two_rockers",
+        two_slides="angle",
+        class_engine="II",
+        four_legs="one",
     ),
-)  # fmt: skip
+)

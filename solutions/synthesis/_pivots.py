@@ -16,7 +16,8 @@ def on_circle(pivot, ends):
 
 
 def of_placement(O, C, positions):
-    """Names of mistakes about where the pivots are, and whether each is made; ``positions`` are pairs A, B."""
+    """Names of mistakes about where the pivots are, and whether each is made; ``positions`` are pairs A,
+    B."""
     ends_A, ends_B = zip(*positions, strict=True)
     off = ~(on_circle(O, ends_A) & on_circle(C, ends_B))
     return {"pivots_exchanged": off & on_circle(C, ends_A) & on_circle(O, ends_B), "off_the_bisectors": off}

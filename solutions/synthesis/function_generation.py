@@ -1,4 +1,5 @@
-"""Function generation: solution. Freudenstein's equation is linear in three ratios of lengths: three points give them.
+"""Function generation: solution. Freudenstein's equation is linear in three ratios of lengths: three points
+give them.
 
 The judge moves the student's own linkage through the range, in the assembly that suits it better.
 """
@@ -13,17 +14,52 @@ from coursework.figures import Figure, ground_pivot, line, link, pin
 from coursework.solution import Judged, formula, given, judge, mistake, stable
 
 UNITS = {
-    "a": "1", "b": "1", "x2": "1", "x3": "1", "y1": "1", "y2": "1", "y3": "1", "ya": "1", "yb": "1",
-    "theta2_2": "deg", "theta2_3": "deg", "theta4_1": "deg", "theta4_3": "deg",
-    "p1": "1", "p3": "1", "q1": "1", "q3": "1", "w1": "1", "w3": "1", "K1": "1", "K2": "1", "K3": "1",
-    "deviation": "deg", "least_transmission": "deg",
-}  # fmt: skip
+    "a": "1",
+    "b": "1",
+    "x2": "1",
+    "x3": "1",
+    "y1": "1",
+    "y2": "1",
+    "y3": "1",
+    "ya": "1",
+    "yb": "1",
+    "theta2_2": "deg",
+    "theta2_3": "deg",
+    "theta4_1": "deg",
+    "theta4_3": "deg",
+    "p1": "1",
+    "p3": "1",
+    "q1": "1",
+    "q3": "1",
+    "w1": "1",
+    "w3": "1",
+    "K1": "1",
+    "K2": "1",
+    "K3": "1",
+    "deviation": "deg",
+    "least_transmission": "deg",
+}
 SYMBOLS = {
-    "x2": "x_2", "x3": "x_3", "ya": "f(a)", "yb": "f(b)", "y1": "y_1", "y2": "y_2", "y3": "y_3",
-    "theta2_2": r"\theta_2^2", "theta2_3": r"\theta_2^3", "theta4_1": r"\theta_4^1", "theta4_3": r"\theta_4^3",
-    "p1": "p_1", "p3": "p_3", "q1": "q_1", "q3": "q_3", "w1": "w_1", "w3": "w_3",
-    "deviation": r"\varepsilon_{\max}", "least_transmission": r"\mu_{\min}",
-}  # fmt: skip
+    "x2": "x_2",
+    "x3": "x_3",
+    "ya": "f(a)",
+    "yb": "f(b)",
+    "y1": "y_1",
+    "y2": "y_2",
+    "y3": "y_3",
+    "theta2_2": r"\theta_2^2",
+    "theta2_3": r"\theta_2^3",
+    "theta4_1": r"\theta_4^1",
+    "theta4_3": r"\theta_4^3",
+    "p1": "p_1",
+    "p3": "p_3",
+    "q1": "q_1",
+    "q3": "q_3",
+    "w1": "w_1",
+    "w3": "w_3",
+    "deviation": r"\varepsilon_{\max}",
+    "least_transmission": r"\mu_{\min}",
+}
 _RANGES = {"logarithm": (1.0, 2.0), "inverse": (1.0, 2.0), "sine": (0.0, 1.0), "root": (1.0, 4.0)}
 _TURN = 360.0
 
@@ -210,10 +246,11 @@ _OPEN = 180.0  #: degrees, the error of a linkage that does not close all along
 
 
 def _at(share, K1, K2, level, law, theta2_0, range2, theta4_0, range4):
-    """At a share of the range: the error in either assembly, and the lesser angle of coupler and rocker, degrees.
+    """At a share of the range: the error in either assembly, and the lesser angle of coupler and rocker,
+    degrees.
 
-    By Freudenstein's equation, since links without end, or of no length, cost a triangle of lengths its digits.
-    ``level`` is ``K2 cos(theta2) - K3`` in the middle of the range.
+    By Freudenstein's equation, since links without end, or of no length, cost a triangle of lengths its
+    digits. ``level`` is ``K2 cos(theta2) - K3`` in the middle of the range.
     """
     a, b = _end(law, 0), _end(law, 1)
     rise = (_of(law, a + (b - a) * share) - _of(law, a)) / (_of(law, b) - _of(law, a))
@@ -234,7 +271,8 @@ def _at(share, K1, K2, level, law, theta2_0, range2, theta4_0, range4):
 
 
 def _motion(*linkage):
-    """The structural error in the better assembly, and the least angle of coupler and rocker, 0 where it does not close."""
+    """The structural error in the better assembly, and the least angle of coupler and rocker, 0 where it does
+    not close."""
     shares = np.arange(_STEPS + 1) / _STEPS
     if not all(isinstance(value, (str, float, int, np.generic, np.ndarray)) for value in linkage):
         # Numbers of many digits, one by one.
@@ -367,7 +405,8 @@ def figure(r1, r2, r3, r4, theta2_1, theta4_1, theta2_2, theta4_2, theta2_3, the
 
 
 def residual(law, r1, theta2_0, range2, theta4_0, range4, r2, r3, r4, worst):
-    """At each precision point the pins are as far apart as the coupler is long; the worst of a finer motion."""
+    """At each precision point the pins are as far apart as the coupler is long; the worst of a finer
+    motion."""
     ends = {"logarithm": (1, 2), "inverse": (1, 2), "sine": (0, 1), "root": (1, 4)}
     start, stop = (np.select([law == name for name in ends], [e[k] for e in ends.values()]) for k in (0, 1))
 
@@ -390,7 +429,8 @@ KNOWN = (
     # The middle of the range, its cosines of 30 degrees to both sides.
     given(law="logarithm", theta2_0=40, range2=60).gives(x1=1.5 - 3**0.5 / 4, theta2_1=70 - 15 * 3**0.5),
     given(law="sine").gives(x1=0.5 - 3**0.5 / 4, x3=0.5 + 3**0.5 / 4),
-    # A parallelogram turns its rocker as its crank: with these angles at three points, K3 is the cosine of nothing.
+    # A parallelogram turns its rocker as its crank: with these angles at three points, K3 is the cosine of
+    # nothing.
     given(
         r1=100, theta2_1=40, theta4_1=40, theta2_2=70, theta4_2=70, theta2_3=100, theta4_3=100, K1=2, K2=2
     ).gives(K3=1, r2=50, r4=50, r3=100),

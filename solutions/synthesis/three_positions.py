@@ -1,4 +1,5 @@
-"""Three positions of a coupler: solution. Each pivot is the centre of the circle through three places of its pin."""
+"""Three positions of a coupler: solution. Each pivot is the centre of the circle through three places of its
+pin."""
 
 import numpy as np
 
@@ -11,13 +12,24 @@ from ._pivots import PIVOTS, judged_lengths, of_placement, pivots_of
 
 UNITS = {
     **{f"{axis}_B{k}": "mm" for axis in "xy" for k in (1, 2, 3)},
-    "b_A2": "mm^2", "b_A3": "mm^2", "b_B2": "mm^2", "b_B3": "mm^2", "D_A": "mm^2", "D_B": "mm^2", "frame": "mm",
-}  # fmt: skip
+    "b_A2": "mm^2",
+    "b_A3": "mm^2",
+    "b_B2": "mm^2",
+    "b_B3": "mm^2",
+    "D_A": "mm^2",
+    "D_B": "mm^2",
+    "frame": "mm",
+}
 SYMBOLS = {
     **{f"{axis}_B{k}": f"{axis}_{{B_{k}}}" for axis in "xy" for k in (1, 2, 3)},
-    "b_A2": "A_1A_2^2", "b_A3": "A_1A_3^2", "b_B2": "B_1B_2^2", "b_B3": "B_1B_3^2", "D_A": "D_A", "D_B": "D_B",
+    "b_A2": "A_1A_2^2",
+    "b_A3": "A_1A_3^2",
+    "b_B2": "B_1B_2^2",
+    "b_B3": "B_1B_3^2",
+    "D_A": "D_A",
+    "D_B": "D_B",
     "frame": "OC",
-}  # fmt: skip
+}
 
 
 def x_B1(x1, L, phi1):
@@ -45,7 +57,8 @@ def y_B3(y3, L, phi3):
 
 
 def _ordered(x1, y1, phi1, x2, y2, phi2, x3, y3, phi3):
-    """The three places of A and directions, in turn, so that the first is not the one far from both others."""
+    """The three places of A and directions, in turn, so that the first is not the one far from both
+    others."""
     first, second, third = (x1, y1, phi1), (x2, y2, phi2), (x3, y3, phi3)
 
     def apart(p, q):
@@ -60,7 +73,8 @@ def _ordered(x1, y1, phi1, x2, y2, phi2, x3, y3, phi3):
 
 
 def _centre(places, L):
-    """The point as far from three places of a point at L from A, in digits that far places and a long coupler leave."""
+    """The point as far from three places of a point at L from A, in digits that far places and a long coupler
+    leave."""
     (x1, y1, phi1), *others = places
     rows = []
     for x2, y2, phi in others:

@@ -1,6 +1,8 @@
-"""Two positions of a coupler: solution. A pivot is as far from both places of its pin: on the perpendicular bisector.
+"""Two positions of a coupler: solution. A pivot is as far from both places of its pin: on the perpendicular
+bisector.
 
-The two bisectors cross at the pole. The solution takes, on each, the point as far below the chord as the coupler is long.
+The two bisectors cross at the pole. The solution takes, on each, the point as far below the chord as the
+coupler is long.
 """
 
 import numpy as np
@@ -13,13 +15,25 @@ from ...exercises.synthesis._positions import in_its_place, placed, side
 from ._pivots import PIVOTS, judged_lengths, of_placement, pivots_of
 
 UNITS = {
-    "x_B1": "mm", "y_B1": "mm", "x_B2": "mm", "y_B2": "mm", "d_A": "mm", "d_B": "mm", "half": "deg",
+    "x_B1": "mm",
+    "y_B1": "mm",
+    "x_B2": "mm",
+    "y_B2": "mm",
+    "d_A": "mm",
+    "d_B": "mm",
+    "half": "deg",
     "frame": "mm",
-}  # fmt: skip
+}
 SYMBOLS = {
-    "x_B1": "x_{B_1}", "y_B1": "y_{B_1}", "x_B2": "x_{B_2}", "y_B2": "y_{B_2}", "d_A": "A_1A_2", "d_B": "B_1B_2",
-    "half": r"\frac{\varphi_{12}}{2}", "frame": "OC",
-}  # fmt: skip
+    "x_B1": "x_{B_1}",
+    "y_B1": "y_{B_1}",
+    "x_B2": "x_{B_2}",
+    "y_B2": "y_{B_2}",
+    "d_A": "A_1A_2",
+    "d_B": "B_1B_2",
+    "half": r"\frac{\varphi_{12}}{2}",
+    "frame": "OC",
+}
 
 
 def x_B1(x1, L, phi1):
@@ -117,7 +131,8 @@ def fault(x_O, y_O, x_C, y_C, x1, y1, phi1, x2, y2, phi2, L):
 
 @judge
 def passes_both_positions(answers, x1, y1, phi1, x2, y2, phi2, L):
-    """Any pair of pivots from which the coupler reaches both positions; lengths from the student's own pivots."""
+    """Any pair of pivots from which the coupler reaches both positions; lengths from the student's own
+    pivots."""
     pivots = pivots_of(answers)
     if pivots is None:
         return {}
@@ -159,7 +174,8 @@ def out_of_bounds(x_P, y_P):
 
 @mistake("x_O", "y_O", "x_C", "y_C")
 def assembled_otherwise(x_O, y_O, x_C, y_C, x1, y1, phi1, x2, y2, phi2, L):
-    """With a pivot C on the bisector that sees the positions from two sides; the right one where there is none."""
+    """With a pivot C on the bisector that sees the positions from two sides; the right one where there is
+    none."""
     return _of_another_assembly(x_O, y_O, x_C, y_C, x1, y1, phi1, x2, y2, phi2, L)
 
 

@@ -21,7 +21,8 @@ def places(course, name):
     return hard_places(exercise, numbers(exercise))
 
 
-#: What an expert would type: the linkage at its hardest, the angle at which it is so, and the lengths that meet there.
+#: What an expert would type: the linkage at its hardest, the angle at which it is so, and the lengths that
+#: meet there.
 EXPERT = {
     "four_bar_motion": ({"r1": 100, "r2": 50, "r3": 70, "r4": 80, "theta2": 180}, ("r1", "r2", "r3", "r4")),
     "slider_crank": ({"r2": 100, "r3": 100, "e": 0, "theta2": 90}, ("r2", "r3", "e")),
@@ -31,7 +32,8 @@ EXPERT = {
 
 @pytest.mark.parametrize("name", sampled(EXPERT, ("slider_crank", "slotted_mechanism")))
 def test_what_an_expert_would_type_is_found(course, name):
-    """The margin that vanishes at the place that is found vanishes at the expert's, and is as double there."""
+    """The margin that vanishes at the place that is found vanishes at the expert's, and is as double
+    there."""
     exercise, (typed, lengths) = course[name], EXPERT[name]
     found = [p for p in places(course, name) if p.double and p.moved == "theta2"]
     assert found

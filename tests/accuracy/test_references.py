@@ -1,4 +1,5 @@
-"""Right values have many digits and close the equations that are stated besides: a wrong formula is caught."""
+"""Right values have many digits and close the equations that are stated besides: a wrong formula is
+caught."""
 
 from __future__ import annotations
 

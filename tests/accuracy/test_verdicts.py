@@ -16,13 +16,26 @@ from coursework.language.words import languages, words
 
 def row(family, place, ns, error, *, setting=None, spread=0.04, failed=0, build=None):
     return Measurement(
-        "x", "position", f"{family}-{setting or ''}", place, ns, error, 20, failed, family, setting,
-        ns * (1 - spread / 2), ns * (1 + spread / 2), 9, build,
-    )  # fmt: skip
+        "x",
+        "position",
+        f"{family}-{setting or ''}",
+        place,
+        ns,
+        error,
+        20,
+        failed,
+        family,
+        setting,
+        ns * (1 - spread / 2),
+        ns * (1 + spread / 2),
+        9,
+        build,
+    )
 
 
 def stored():
-    """As they were measured once, of a four-bar linkage: times in ns, errors at generic and at hard places."""
+    """As they were measured once, of a four-bar linkage: times in ns, errors at generic and at hard
+    places."""
     figures = [
         ("single", None, 81, 3.1e-7, 8.5e-6),
         ("table", 64, 21, 5.8e-7, 1.0e-2),
@@ -132,7 +145,8 @@ def test_every_call_has_its_turn_in_every_round():
 
 
 def test_a_clock_that_ticks_coarsely_makes_no_round_long(monkeypatch):
-    """As that of processor time does while a profiler samples: it says nanoseconds and ticks every four milliseconds."""
+    """As that of processor time does while a profiler samples: it says nanoseconds and ticks every four
+    milliseconds."""
     done = []
     monkeypatch.setattr("coursework.accuracy.timing.clock", lambda: len(done) * 1e-5 // 4e-3 * 4e-3)
     # A call of 10 microseconds: 2000 of them a round.

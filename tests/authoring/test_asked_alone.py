@@ -1,4 +1,5 @@
-"""Any question may be asked alone: its words, formulas and drawings find what the others would have found on the way."""
+"""Any question may be asked alone: its words, formulas and drawings find what the others would have found on
+the way."""
 
 from __future__ import annotations
 
@@ -14,7 +15,8 @@ from coursework.issuing.issuing import distinct_variants
 
 COURSE = coursework.open_course()
 VARIANTS = 8
-#: A text that counts what others find, a formula stated with an angle, a drawing that takes hidden vectors, parts of one judge.
+#: A text that counts what others find, a formula stated with an angle, a drawing that takes hidden vectors,
+#: parts of one judge.
 TELLING = {"closed_chain", "grashof", "slider_crank", "velocity_polygon_slotted"}
 
 
@@ -56,9 +58,10 @@ def test_what_exists_in_no_variant_like_this_is_still_refused(small_course):
         small_course, "solutions/crank_pin.en.md.j2", ("a circle of radius $r$", "a circle, $t$ = {{ t }}")
     )
     change(
-        small_course, "solutions/crank_pin.py",
-        ("@mistake(\"x\"", "def t(r):\n    return np.nan * r\n\n\n@mistake(\"x\""),
-    )  # fmt: skip
+        small_course,
+        "solutions/crank_pin.py",
+        ('@mistake("x"', 'def t(r):\n    return np.nan * r\n\n\n@mistake("x"'),
+    )
     with pytest.raises(BadStatement, match="'t' is undefined"):
         coursework.open_course(small_course)["crank_pin"].variant(3, "en", ["v"]).answer_sheet()
 
@@ -66,9 +69,11 @@ def test_what_exists_in_no_variant_like_this_is_still_refused(small_course):
 def test_a_formula_stated_with_another_quantity_is_told_after_it(small_course):
     stated = '@formula(r"\\sqrt{<r>^2 - <x>^2}")\ndef y(r, theta)'
     change(
-        small_course, "solutions/crank_pin.py",
-        ("def y(r, theta)", stated), ("import mistake", "import formula, mistake"),
-    )  # fmt: skip
+        small_course,
+        "solutions/crank_pin.py",
+        ("def y(r, theta)", stated),
+        ("import mistake", "import formula, mistake"),
+    )
     variant = coursework.open_course(small_course)["crank_pin"].variant(3, "en", ["y"])
     assert [step.name for step in variant.answer_sheet().steps] == ["x", "y"]
     assert [step.asked for step in variant.answer_sheet().steps] == [False, True]
@@ -79,9 +84,12 @@ def test_two_formulas_may_be_stated_with_each_other(small_course):
         f'@formula(r"\\sqrt{{<r>^2 - <{other}>^2}}")\ndef {own}(r, theta)' for own, other in ("xy", "yx")
     ]
     change(
-        small_course, "solutions/crank_pin.py",
-        ("def x(r, theta)", stated[0]), ("def y(r, theta)", stated[1]), ("import mistake", "import formula, mistake"),
-    )  # fmt: skip
+        small_course,
+        "solutions/crank_pin.py",
+        ("def x(r, theta)", stated[0]),
+        ("def y(r, theta)", stated[1]),
+        ("import mistake", "import formula, mistake"),
+    )
     exercise = coursework.open_course(small_course)["crank_pin"]
     for own in "xy":
         *_, step = exercise.variant(3, "en", [own]).answer_sheet().steps
@@ -91,9 +99,11 @@ def test_two_formulas_may_be_stated_with_each_other(small_course):
 
 def v_told_after(course, *names):
     change(
-        course, "solutions/crank_pin.py",
-        ("def v(r, omega)", f"@told_after{names}\ndef v(r, omega)"), ("import mistake", "import mistake, told_after"),
-    )  # fmt: skip
+        course,
+        "solutions/crank_pin.py",
+        ("def v(r, omega)", f"@told_after{names}\ndef v(r, omega)"),
+        ("import mistake", "import mistake, told_after"),
+    )
     return coursework.open_course(course)["crank_pin"]
 
 
@@ -125,14 +135,17 @@ def on_the_circle(answers, r):
 
 def judged_together(course, also=""):
     change(
-        course, "exercises/crank_pin.py",
+        course,
+        "exercises/crank_pin.py",
         ('Part("x", unit="mm")', 'Part("x", unit="mm", judge="on_the_circle")'),
         ('Part("y", unit="mm")', f'Part("y", unit="mm", judge="on_the_circle"{also})'),
-    )  # fmt: skip
+    )
     change(
-        course, "solutions/crank_pin.py",
-        ('\n@mistake("x", "y")', TOGETHER), ("import mistake", "import Judged, judge, mistake"),
-    )  # fmt: skip
+        course,
+        "solutions/crank_pin.py",
+        ('\n@mistake("x", "y")', TOGETHER),
+        ("import mistake", "import Judged, judge, mistake"),
+    )
     return coursework.open_course(course)["crank_pin"]
 
 

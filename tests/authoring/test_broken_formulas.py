@@ -1,4 +1,5 @@
-"""What an author writes for a number alone is told where it breaks: a choice by if on an array, a complex answer."""
+"""What an author writes for a number alone is told where it breaks: a choice by if on an array, a complex
+answer."""
 
 import numpy as np
 import pytest
@@ -16,7 +17,10 @@ def with_v(small_course, code):
 
 
 BRANCH = "    if omega > 10:\n        return r * omega\n    return omega * r\n"
-TOLD = "v (crank_pin.py, line 20) branches on an array, at line 21 of crank_pin.py: if omega > 10:; use np.where("
+TOLD = (
+    "v (crank_pin.py, line 20) branches on an array, at line 21 of crank_pin.py: if omega > 10:; use "
+    "np.where("
+)
 
 
 def test_a_choice_by_if_is_told_with_its_line_and_what_would_do(small_course):
@@ -32,7 +36,10 @@ def test_a_function_of_math_is_told_with_what_would_do(small_course):
     exercise = with_v(small_course, "    import math\n    return math.hypot(r * omega, 0)\n")
     assert exercise.solve(r=2, omega=11, only="v") == {"v": 22}
     (failure,) = check(exercise, 5).failures
-    told = "v (crank_pin.py, line 20) makes one number of an array, at line 22 of crank_pin.py: return math.hypot("
+    told = (
+        "v (crank_pin.py, line 20) makes one number of an array, at line 22 of crank_pin.py: return "
+        "math.hypot("
+    )
     assert failure.startswith(told)
     assert "coursework.degrees" in failure
 
@@ -51,7 +58,10 @@ def test_a_choice_in_a_helper_is_told_by_the_line_of_the_helper():
 
 def test_a_complex_answer_is_told(small_course):
     exercise = with_v(small_course, "    return 1j * r * omega\n")
-    told = "v is a complex number, and part 'v' asks for a real one; return its .real, its .imag, abs(…) or angle(…)"
+    told = (
+        "v is a complex number, and part 'v' asks for a real one; return its .real, its .imag, abs(…) or "
+        "angle(…)"
+    )
     (failure,) = check(exercise, 5).failures
     assert failure.startswith(f"solutions/crank_pin.py: {told}")
     with pytest.raises(BadCourse, match="v is a complex number"):

@@ -1,4 +1,5 @@
-"""The formula on paper gives the number on paper: what is printed is read back, and a wrong print is caught."""
+"""The formula on paper gives the number on paper: what is printed is read back, and a wrong print is
+caught."""
 
 from __future__ import annotations
 
@@ -37,20 +38,27 @@ every_exercise = pytest.mark.parametrize("name", COURSE.names)
         (r"\sqrt{\num{3}^{\num{2}} + \num{4}^2}", 5),
         (r"\left|\num{-4} + \num{1}\right|\,\pi", 3 * math.pi),
         (r"\sin \num{30}^{\circ} + \cos\left(\num{60}^{\circ}\right)", 1),
-        (r"\num{2} \sin\left(\frac{\num{60}^{\circ}}{\num{2}}\right) \cos \left(\num{-60}^{\circ}\right)", 0.5),
+        (
+            r"\num{2} \sin\left(\frac{\num{60}^{\circ}}{\num{2}}\right) \cos \left(\num{-60}^{\circ}\right)",
+            0.5,
+        ),
         (r"\sin^{\num{2}}\left(\num{30}^{\circ}\right)", 0.25),
         (r"\sin\left(\num{2}\right)", math.sin(2)),
         (r"\arcsin \frac{\num{1}}{2}", math.pi / 6),
         (r"\operatorname{atan2}\left(-\num{1};\ \num{-1}\right)", -3 * math.pi / 4),
         (r"\num{30}^{\circ} + \num{90}^{\circ} \times \num{1}", 2 * math.pi / 3),
-        (r"\operatorname{min}\left(\num{4};\ \num{2};\ \num{7}\right)\,\operatorname{sgn}\left(\num{-5}\right)", -2),
+        (
+            r"\operatorname{min}\left(\num{4};\ \num{2};\ \num{7}\right)"
+            r"\,\operatorname{sgn}\left(\num{-5}\right)",
+            -2,
+        ),
         (r"\operatorname{Re}\left(\num{2}\,e^{i\,\num{60}^{\circ}}\right)", 1),
         (r"\operatorname{arg}\left(\num{3}\,i + \left(\num{3} - \num{0}\,i\right)\right)", math.pi / 4),
         (r"\left|\left(\num{3} - \num{4}\,i\right)\right|", 5),
         (r"\num{2} \times (\num{3} + \num{4})^2", 98),
         (r"\num{1.5e3} \cdot \num{2}", 3000),
     ],
-)  # fmt: skip
+)
 def test_a_printed_formula_gives_what_a_reader_finds(latex, value):
     (found,) = read(latex, 5).values
     assert found == pytest.approx(value, rel=1e-14)
@@ -86,10 +94,17 @@ def test_what_gives_no_number_is_refused_by_its_name(latex, told):
 
 
 def test_the_width_is_what_rounding_the_printed_numbers_does():
-    width = {latex: read(latex, 5).widths[0] for latex in (
-        r"\num{319.80}", r"\num{319.8}", r"\num{12346}", r"\num{1.2346e-5}", r"\num{2} \times \num{319.80}",
-        r"\num{319.80} + \num{45.000}",
-    )}  # fmt: skip
+    width = {
+        latex: read(latex, 5).widths[0]
+        for latex in (
+            r"\num{319.80}",
+            r"\num{319.8}",
+            r"\num{12346}",
+            r"\num{1.2346e-5}",
+            r"\num{2} \times \num{319.80}",
+            r"\num{319.80} + \num{45.000}",
+        )
+    }
     assert list(width.values()) == pytest.approx([0.005, 3.198e-7, 0.5, 5e-10, 0.01, 0.0055], rel=1e-4)
     # A direction that jumps by a turn does not move.
     assert (

@@ -72,11 +72,14 @@ def test_counts_are_those_of_the_joint_graph():
     double = Mechanism(
         {"D": 0, "O": 1j},
         (
-            Body("2", "a", "O", {"A": 1}), Body("3", "b", "A", {"B": 1}), Body("4", "c", "D", {"B": 1}),
-            Body("5", "d", "B", {"P": 1}), Body("6", 0, "P"),
+            Body("2", "a", "O", {"A": 1}),
+            Body("3", "b", "A", {"B": 1}),
+            Body("4", "c", "D", {"B": 1}),
+            Body("5", "d", "B", {"P": 1}),
+            Body("6", 0, "P"),
         ),
         (Slide("P", "6"),),
-    )  # fmt: skip
+    )
     found = counts(double)
     assert (found.n, found.b, found.h, found.w, found.gamma) == (5, 7, 0, 1, 2)
 
@@ -91,15 +94,20 @@ def test_a_free_body_goes_as_its_slides_let_it(tmp_path):
         "from coursework.model import Driver, Exercise, Part, drawn\n"
         "EXERCISE = Exercise(given={'r': drawn(40, 90, unit='mm'), 'theta': drawn(10, 80, unit='deg'),"
         " 'omega': drawn(2, 9, unit='rad/s')}, parts=(Part('x', unit='mm', points=1),),"
-        " driver=Driver('theta', 'omega'))\n", "utf-8",
-    )  # fmt: skip
+        " driver=Driver('theta', 'omega'))\n",
+        "utf-8",
+    )
     for turn, found in (("cos", []), ("sin", ["goes otherwise than its slides let it"])):
         (course / "solutions" / "yoke.py").write_text(
-            "from coursework.degrees import cos, sin\nfrom coursework.mechanics import Body, Mechanism, Slide\n"
-            "MECHANISM = Mechanism(ground={'O': 0}, bodies=(Body('2', 'theta', 'O', {'A': 'r'}), Body('3', 0, 'A'),"
-            " Body('4', 0, 'Y', origin='x')), slides=(Slide('A', '3', on='4', along=90.0), Slide('Y', '4')))\n"
-            f"def x(r, theta):\n    return r * {turn}(theta)\n" + "\n" * (turn == "sin"), "utf-8",
-        )  # fmt: skip
+            "from coursework.degrees import cos, sin\nfrom coursework.mechanics import Body, "
+            "Mechanism, Slide\n"
+            "MECHANISM = Mechanism(ground={'O': 0}, bodies=(Body('2', 'theta', 'O', {'A': 'r'}), "
+            "Body('3', 0, 'A'),"
+            " Body('4', 0, 'Y', origin='x')), slides=(Slide('A', '3', on='4', along=90.0), Slide('Y', "
+            "'4')))\n"
+            f"def x(r, theta):\n    return r * {turn}(theta)\n" + "\n" * (turn == "sin"),
+            "utf-8",
+        )
         told = list(faults(Course(course_folder(course), Variant)["yoke"].variant(0)))
         assert [why for why in found if any(why in one for one in told)] == found
         assert len(told) == len(found)

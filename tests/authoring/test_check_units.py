@@ -1,4 +1,5 @@
-"""Formulas give the units that are declared: no false alarm over the course, and planted errors are all told."""
+"""Formulas give the units that are declared: no false alarm over the course, and planted errors are all
+told."""
 
 from __future__ import annotations
 
@@ -53,51 +54,217 @@ CORIOLIS = "slotted/coriolis"
 
 #: Exercise, file, what is written, what is planted, what the check says.
 PLANTS = {
-    "a length in km": (SLOTTED, 'Part("rA", unit="mm"', 'Part("rA", unit="km"', "rA is declared in km, and its formula gives mm"),
-    "a length in cm": (RETURN, 'Part("xC", unit="mm"', 'Part("xC", unit="cm"', "xC is declared in cm, and its formula gives mm"),
-    "a length in m": (OFFSET, 'Part("stroke", unit="mm"', 'Part("stroke", unit="m"', "stroke is declared in m, "),
+    "a length in km": (
+        SLOTTED,
+        'Part("rA", unit="mm"',
+        'Part("rA", unit="km"',
+        "rA is declared in km, and its formula gives mm",
+    ),
+    "a length in cm": (
+        RETURN,
+        'Part("xC", unit="mm"',
+        'Part("xC", unit="cm"',
+        "xC is declared in cm, and its formula gives mm",
+    ),
+    "a length in m": (
+        OFFSET,
+        'Part("stroke", unit="mm"',
+        'Part("stroke", unit="m"',
+        "stroke is declared in m, ",
+    ),
     "a length in kN": (SHAPER, 'Part("d5", unit="mm"', 'Part("d5", unit="kN"', "d5 is declared in kN, "),
     "a length in mm/s": (CRANK, 'Part("r1", unit="mm"', 'Part("r1", unit="mm/s"', "r1 is declared in mm/s, "),
-    "a force in kN": (TORQUE, 'Part("R_A", unit="N"', 'Part("R_A", unit="kN"', "R_A is declared in kN, and its formula gives N"),
-    "an output force in kN": (ADVANTAGE, 'Part("F_s", unit="N"', 'Part("F_s", unit="kN"', "F_s is declared in kN, "),
-    "a force for a torque": (TORQUE, 'Part("torque", unit="N*m"', 'Part("torque", unit="N"', "torque is declared in N, "),
+    "a force in kN": (
+        TORQUE,
+        'Part("R_A", unit="N"',
+        'Part("R_A", unit="kN"',
+        "R_A is declared in kN, and its formula gives N",
+    ),
+    "an output force in kN": (
+        ADVANTAGE,
+        'Part("F_s", unit="N"',
+        'Part("F_s", unit="kN"',
+        "F_s is declared in kN, ",
+    ),
+    "a force for a torque": (
+        TORQUE,
+        'Part("torque", unit="N*m"',
+        'Part("torque", unit="N"',
+        "torque is declared in N, ",
+    ),
     "a torque in N*mm": (TORQUE, 'Part("torque", unit="N*m"', 'Part("torque", unit="N*mm"', "torque "),
-    "an angle in rad": (SLOTTED, 'Part("theta4", unit="deg"', 'Part("theta4", unit="rad"', "theta4 is declared in rad, and its formula gives deg"),
+    "an angle in rad": (
+        SLOTTED,
+        'Part("theta4", unit="deg"',
+        'Part("theta4", unit="rad"',
+        "theta4 is declared in rad, and its formula gives deg",
+    ),
     "an arc in rad": (RETURN, 'Part("beta", unit="deg"', 'Part("beta", unit="rad"', "beta "),
-    "an arc that a number gives, in rad": (OFFSET, 'Part("alpha", unit="deg"', 'Part("alpha", unit="rad"', "alpha "),
-    "an angle of the core in rad": (RETURN, '"DOB": "deg"', '"DOB": "rad"', "DOB is declared in rad, and its formula gives deg"),
-    "a length of the core in cm": (RETURN, '"OB": "mm"', '"OB": "cm"', "OB is declared in cm, and its formula gives mm"),
-    "a rate in turns a minute": (MOTION, 'Part("omega4", unit="rad/s"', 'Part("omega4", unit="tr/min"', "omega4 is declared in tr/min, and its formula gives rad/s"),
-    "a rate in degrees": (PLANETS, 'Part("omega3", unit="rad/s"', 'Part("omega3", unit="deg/s"', "omega3 is declared in deg/s, "),
-    "a rate for an acceleration": (MOTION, 'Part("alpha4", unit="rad/s^2"', 'Part("alpha4", unit="rad/s"', "alpha4 is declared in rad/s, "),
-    "a velocity in m/s": (CRANK, 'Part("r1_dot", unit="mm/s"', 'Part("r1_dot", unit="m/s"', "r1_dot is declared in m/s, "),
-    "a velocity for an acceleration": (MOTION, 'Part("a_B", unit="mm/s^2"', 'Part("a_B", unit="mm/s"', "a_B is declared in mm/s, "),
-    "a duration in ms": (RETURN, 'Part("t_return", unit="s"', 'Part("t_return", unit="ms"', "t_return is declared in ms, "),
-    "a given length in cm beside one in mm": (SLOTTED, '"r2": drawn(40, 250, step=5, unit="mm")', '"r2": drawn(40, 250, step=5, unit="cm")', "cm"),
-    "a given crank in m": (ADVANTAGE, '"r2": drawn(30, 90, step=5, unit="mm")', '"r2": drawn(30, 90, step=5, unit="m")', " m"),
-    "a given rod in km": (OFFSET, 'step=5, unit="mm", positive=True)', 'step=5, unit="km", positive=True)', "km"),
+    "an arc that a number gives, in rad": (
+        OFFSET,
+        'Part("alpha", unit="deg"',
+        'Part("alpha", unit="rad"',
+        "alpha ",
+    ),
+    "an angle of the core in rad": (
+        RETURN,
+        '"DOB": "deg"',
+        '"DOB": "rad"',
+        "DOB is declared in rad, and its formula gives deg",
+    ),
+    "a length of the core in cm": (
+        RETURN,
+        '"OB": "mm"',
+        '"OB": "cm"',
+        "OB is declared in cm, and its formula gives mm",
+    ),
+    "a rate in turns a minute": (
+        MOTION,
+        'Part("omega4", unit="rad/s"',
+        'Part("omega4", unit="tr/min"',
+        "omega4 is declared in tr/min, and its formula gives rad/s",
+    ),
+    "a rate in degrees": (
+        PLANETS,
+        'Part("omega3", unit="rad/s"',
+        'Part("omega3", unit="deg/s"',
+        "omega3 is declared in deg/s, ",
+    ),
+    "a rate for an acceleration": (
+        MOTION,
+        'Part("alpha4", unit="rad/s^2"',
+        'Part("alpha4", unit="rad/s"',
+        "alpha4 is declared in rad/s, ",
+    ),
+    "a velocity in m/s": (
+        CRANK,
+        'Part("r1_dot", unit="mm/s"',
+        'Part("r1_dot", unit="m/s"',
+        "r1_dot is declared in m/s, ",
+    ),
+    "a velocity for an acceleration": (
+        MOTION,
+        'Part("a_B", unit="mm/s^2"',
+        'Part("a_B", unit="mm/s"',
+        "a_B is declared in mm/s, ",
+    ),
+    "a duration in ms": (
+        RETURN,
+        'Part("t_return", unit="s"',
+        'Part("t_return", unit="ms"',
+        "t_return is declared in ms, ",
+    ),
+    "a given length in cm beside one in mm": (
+        SLOTTED,
+        '"r2": drawn(40, 250, step=5, unit="mm")',
+        '"r2": drawn(40, 250, step=5, unit="cm")',
+        "cm",
+    ),
+    "a given crank in m": (
+        ADVANTAGE,
+        '"r2": drawn(30, 90, step=5, unit="mm")',
+        '"r2": drawn(30, 90, step=5, unit="m")',
+        " m",
+    ),
+    "a given rod in km": (
+        OFFSET,
+        'step=5, unit="mm", positive=True)',
+        'step=5, unit="km", positive=True)',
+        "km",
+    ),
     "a given force in kN": (TORQUE, 'step=10, unit="N")', 'step=10, unit="kN")', "kN"),
     "a given input force in kN": (ADVANTAGE, 'step=10, unit="N")', 'step=10, unit="kN")', "F_s "),
-    "a given angle in rad": (SLOTTED, '"theta1": fixed(90, unit="deg")', '"theta1": fixed(90, unit="rad")', "sin takes deg, and gets rad"),
-    "a given angle of the core in rad": (RETURN, '"angle_OAB": drawn(60, 140, step=5, unit="deg")', '"angle_OAB": drawn(60, 140, step=5, unit="rad")', "Degrees takes deg, and gets rad"),
-    "a given rate in turns a minute": (BALL, '"psi_dot": drawn(-150, 150, unit="rad/s"', '"psi_dot": drawn(-150, 150, unit="tr/min"', "omega is declared in rad/s, and its formula gives tr/min"),
-    "a given velocity in m/s": (CORIOLIS, 'unit="mm/s"', 'unit="m/s"', "a_coriolis is declared in mm/s^2, and its formula gives m/s^2"),
-    "a given mass in g": (TORQUE, '"m3": drawn(8, 18, step=0.5, unit="kg")', '"m3": drawn(8, 18, step=0.5, unit="g")', " N"),
-    "a given inertia in kg*mm^2": (TORQUE, '"J2": drawn(0.1, 0.6, step=0.05, unit="kg*m^2")', '"J2": drawn(0.1, 0.6, step=0.05, unit="kg*mm^2")', "M2 is declared in N*m, "),
-    "a forgotten thousand in a torque": (ADVANTAGE, "return r2 * F_e / 1000", "return r2 * F_e", "Gamma_e is declared in N*m, and its formula gives N*mm"),
-    "a thousand the wrong way": (ADVANTAGE, "return r2 * F_e / 1000", "return r2 * F_e * 1000", "Gamma_e is declared in N*m, "),
-    "a hundred for a thousand": (ADVANTAGE, "return r2 * F_e / 1000", "return r2 * F_e / 100", "Gamma_e is declared in N*m, "),
-    "a forgotten thousand in a sum": (TORQUE, "R_A_x * sin(theta2)) / 1000 - M2", "R_A_x * sin(theta2)) - M2", "torque adds or compares N*mm and N*m"),
-    "UNITS of a sum in cm": (CRANK, '"p": "mm"', '"p": "cm"', "p is declared in cm, and its formula gives mm: p ("),
-    "UNITS of an angle in rad": (MOTION, '"phi": "deg"', '"phi": "rad"', "phi is declared in rad, and its formula gives deg"),
+    "a given angle in rad": (
+        SLOTTED,
+        '"theta1": fixed(90, unit="deg")',
+        '"theta1": fixed(90, unit="rad")',
+        "sin takes deg, and gets rad",
+    ),
+    "a given angle of the core in rad": (
+        RETURN,
+        '"angle_OAB": drawn(60, 140, step=5, unit="deg")',
+        '"angle_OAB": drawn(60, 140, step=5, unit="rad")',
+        "Degrees takes deg, and gets rad",
+    ),
+    "a given rate in turns a minute": (
+        BALL,
+        '"psi_dot": drawn(-150, 150, unit="rad/s"',
+        '"psi_dot": drawn(-150, 150, unit="tr/min"',
+        "omega is declared in rad/s, and its formula gives tr/min",
+    ),
+    "a given velocity in m/s": (
+        CORIOLIS,
+        'unit="mm/s"',
+        'unit="m/s"',
+        "a_coriolis is declared in mm/s^2, and its formula gives m/s^2",
+    ),
+    "a given mass in g": (
+        TORQUE,
+        '"m3": drawn(8, 18, step=0.5, unit="kg")',
+        '"m3": drawn(8, 18, step=0.5, unit="g")',
+        " N",
+    ),
+    "a given inertia in kg*mm^2": (
+        TORQUE,
+        '"J2": drawn(0.1, 0.6, step=0.05, unit="kg*m^2")',
+        '"J2": drawn(0.1, 0.6, step=0.05, unit="kg*mm^2")',
+        "M2 is declared in N*m, ",
+    ),
+    "a forgotten thousand in a torque": (
+        ADVANTAGE,
+        "return r2 * F_e / 1000",
+        "return r2 * F_e",
+        "Gamma_e is declared in N*m, and its formula gives N*mm",
+    ),
+    "a thousand the wrong way": (
+        ADVANTAGE,
+        "return r2 * F_e / 1000",
+        "return r2 * F_e * 1000",
+        "Gamma_e is declared in N*m, ",
+    ),
+    "a hundred for a thousand": (
+        ADVANTAGE,
+        "return r2 * F_e / 1000",
+        "return r2 * F_e / 100",
+        "Gamma_e is declared in N*m, ",
+    ),
+    "a forgotten thousand in a sum": (
+        TORQUE,
+        "R_A_x * sin(theta2)) / 1000 - M2",
+        "R_A_x * sin(theta2)) - M2",
+        "torque adds or compares N*mm and N*m",
+    ),
+    "UNITS of a sum in cm": (
+        CRANK,
+        '"p": "mm"',
+        '"p": "cm"',
+        "p is declared in cm, and its formula gives mm: p (",
+    ),
+    "UNITS of an angle in rad": (
+        MOTION,
+        '"phi": "deg"',
+        '"phi": "rad"',
+        "phi is declared in rad, and its formula gives deg",
+    ),
     "UNITS of a length for an angle": (MOTION, '"psi": "deg"', '"psi": "mm"', "psi is declared in mm, "),
-    "a square forgotten": (MOTION, "return r3 * omega3**2", "return r3 * omega3", "a_BA_n is declared in mm/s^2, and its formula gives mm/s"),
-    "a sine of radians": (SLOTTED, "return r2 * omega2 * sin(theta4 - theta2)", "return r2 * omega2 * np.sin(theta4 - theta2)", "sin takes rad, and gets deg"),
-}  # fmt: skip
+    "a square forgotten": (
+        MOTION,
+        "return r3 * omega3**2",
+        "return r3 * omega3",
+        "a_BA_n is declared in mm/s^2, and its formula gives mm/s",
+    ),
+    "a sine of radians": (
+        SLOTTED,
+        "return r2 * omega2 * sin(theta4 - theta2)",
+        "return r2 * omega2 * np.sin(theta4 - theta2)",
+        "sin takes rad, and gets deg",
+    ),
+}
 
 
 def planted(folder, exercise, old, new):
-    """A copy of the course with a fault in the exercise, its solution, or what solutions of its topic share."""
+    """A copy of the course with a fault in the exercise, its solution, or what solutions of its topic
+    share."""
     shutil.copytree(HERE / "exercises", folder / "exercises")
     shutil.copytree(HERE / "solutions", folder / "solutions")
     topic, _, name = exercise.partition("/")

@@ -182,8 +182,11 @@ def test_a_parameter_that_nothing_gives_is_told_with_the_nearest_name(small_cour
 
 
 #: Given lengths, and how wrong the height is made: by what rounding never does, where it is made at all.
-SIZES = {"4 m": ("2000, 4000, step=5", ""), "4 m, wrong": ("2000, 4000, step=5", " * (1 + 1e-7)"),
-         "microns, wrong": ("0.0001, 0.0002, step=0.00001", " * (1 + 1e-7)")}  # fmt: skip
+SIZES = {
+    "4 m": ("2000, 4000, step=5", ""),
+    "4 m, wrong": ("2000, 4000, step=5", " * (1 + 1e-7)"),
+    "microns, wrong": ("0.0001, 0.0002, step=0.00001", " * (1 + 1e-7)"),
+}
 
 
 @pytest.mark.parametrize("case", SIZES)

@@ -1,4 +1,5 @@
-"""A copy of an exercise works in another course by itself: all that it needs is there, and nothing is replaced."""
+"""A copy of an exercise works in another course by itself: all that it needs is there, and nothing is
+replaced."""
 
 import json
 import subprocess
@@ -109,8 +110,10 @@ def test_what_cannot_be_copied_is_said(tmp_path):
 
 
 OWN = {
-    "exercises/topic/own.py": 'import json\nfrom pathlib import Path\n\nfrom . import base\nfrom ..other._far import far\n'
-    'LOADS = json.loads((Path(__file__).parent / "data/loads.json").read_text("utf-8"))\nMARK = base.B + far()\n',
+    "exercises/topic/own.py": "import json\nfrom pathlib import Path\n\nfrom . import "
+    "base\nfrom ..other._far import far\n"
+    'LOADS = json.loads((Path(__file__).parent / "data/loads.json").read_text("utf-8"))\nMARK = base.B '
+    "+ far()\n",
     "exercises/topic/base.py": "from ._near import near\n\nB = near()\nEXERCISE = None\n",
     "exercises/topic/_near.py": "def near():\n    return 1\n",
     "exercises/other/_far.py": "def far():\n    return 2\n",
@@ -120,8 +123,9 @@ OWN = {
     "templates/deeper.md.j2": "Deeper.\n",
     "exercises/topic/own.svg": "<svg/>",
     "exercises/topic/unasked.csv": "a\n",
-    "solutions/topic/own.py": "from ...exercises.topic.own import MARK, LOADS\n\n\ndef x(a):\n    return a + MARK + LOADS[0]\n",
-}  # fmt: skip
+    "solutions/topic/own.py": "from ...exercises.topic.own import MARK, LOADS\n\n\ndef x(a):\n"
+    "    return a + MARK + LOADS[0]\n",
+}
 
 
 def test_modules_texts_data_and_pictures_are_found_wherever_they_stand(tmp_path):

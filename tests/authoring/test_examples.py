@@ -1,4 +1,5 @@
-"""The example course outside kinematics: copied by a command, it lists, builds, checks clean and marks answers right."""
+"""The example course outside kinematics: copied by a command, it lists, builds, checks clean and marks
+answers right."""
 
 from __future__ import annotations
 

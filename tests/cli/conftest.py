@@ -34,10 +34,19 @@ def built_once(tmp_path_factory):
     with contextlib.redirect_stdout(said):
         status = run(
             [
-                "build", "slotted_mechanism", "four_bar_positions", "--roster", str(folder / "class.csv"),
-                "--out", str(folder / "out"), "--formats", "pdf,ipynb", "--seed", "7",
+                "build",
+                "slotted_mechanism",
+                "four_bar_positions",
+                "--roster",
+                str(folder / "class.csv"),
+                "--out",
+                str(folder / "out"),
+                "--formats",
+                "pdf,ipynb",
+                "--seed",
+                "7",
             ]
-        )  # fmt: skip
+        )
     assert status == 0
     assert str(folder / "out") in said.getvalue()
     return folder

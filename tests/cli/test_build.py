@@ -29,9 +29,18 @@ def test_build_writes_the_tree_of_the_contract(built):
 def test_the_same_command_gives_the_same_bytes(built, cli, tmp_path):
     again = tmp_path / "again"
     cli(
-        "build", "slotted_mechanism", "four_bar_positions", "--roster", tmp_path / "class.csv", "--out", again,
-        "--formats", "pdf,ipynb", "--seed", 7,
-    )  # fmt: skip
+        "build",
+        "slotted_mechanism",
+        "four_bar_positions",
+        "--roster",
+        tmp_path / "class.csv",
+        "--out",
+        again,
+        "--formats",
+        "pdf,ipynb",
+        "--seed",
+        7,
+    )
     assert tree(again) == tree(built)
 
 
@@ -113,7 +122,8 @@ def test_a_build_that_fails_leaves_what_was_there(built, cli, monkeypatch):
 
 
 def test_a_lost_sheet_comes_again_and_who_makes_up_has_another(cli, tmp_path):
-    """A build of exercises is a paper as that of an assignment is: papers come again, and have further sittings."""
+    """A build of exercises is a paper as that of an assignment is: papers come again, and have further
+    sittings."""
     (tmp_path / "class.csv").write_text("student\nAna\nBen\n", "utf-8")
     out = tmp_path / "out"
     usual = ["build", "slotted_mechanism", "--formats", "html", "--lang", "en", "--out", out]
@@ -139,7 +149,8 @@ def test_build_has_few_options():
 
 
 def test_options_that_an_assignment_does_not_use_are_named(cli, tmp_path):
-    """The file of an assignment states its parts, and its secret draws: an option that changes nothing is not ignored silently."""
+    """The file of an assignment states its parts, and its secret draws: an option that changes nothing is not
+    ignored silently."""
     file = tmp_path / "quiz.toml"
     file.write_text('exercises = [{ name = "slotted_mechanism" }]\nformats = "html"\nlang = "en"\n', "utf-8")
     status, _, said = cli("build", file, "--seed", 4, "--parts", "1", "--out", tmp_path / "out")

@@ -1,4 +1,5 @@
-"""Commands that are killed, told to end, or begun twice: no process stays, no folder holds the work of two."""
+"""Commands that are killed, told to end, or begun twice: no process stays, no folder holds the work of
+two."""
 
 from __future__ import annotations
 
@@ -116,8 +117,12 @@ def test_two_builds_at_once_leave_a_whole_one(small_course, tmp_path, time):
     assert len([*(tmp_path / "out" / "handouts").rglob("*.html")]) == 12
     assert len([*(tmp_path / "out" / "instructor").rglob("*.html")]) == 12
     assert {p.name for p in (tmp_path / "out").iterdir()} == {
-        "handouts", "instructor", "issued.json", "answers.csv", ".built.json",
-    }  # fmt: skip
+        "handouts",
+        "instructor",
+        "issued.json",
+        "answers.csv",
+        ".built.json",
+    }
 
 
 @pytest.mark.e2e

@@ -57,9 +57,18 @@ def test_every_damaged_row_is_reported_and_nothing_else_is_lost(built, cli, tmp_
     assert len(marks) == good
     assert len(marks) + len(rejected) == len(rows) + 1 + 1
     reasons = " | ".join(r["reason"] for r in rejected)
-    for told in ("no student 'Zoé'", f"seed 999 of slotted_mechanism was not issued; Émilie Lefèvre has seed {first['seed']}",
-                 "no exercise 'zz' was issued; issued: slotted_mechanism, four_bar_positions", "'seven'", "did you mean 'rA'", "did you mean 'slotted_mechanism'",
-                 "no student's name", "repeats", "1 cells", "not a notebook"):  # fmt: skip
+    for told in (
+        "no student 'Zoé'",
+        f"seed 999 of slotted_mechanism was not issued; Émilie Lefèvre has seed {first['seed']}",
+        "no exercise 'zz' was issued; issued: slotted_mechanism, four_bar_positions",
+        "'seven'",
+        "did you mean 'rA'",
+        "did you mean 'slotted_mechanism'",
+        "no student's name",
+        "repeats",
+        "1 cells",
+        "not a notebook",
+    ):
         assert told in reasons
     assert [s["percent"] for s in table(tmp_path / "m" / "summary.csv")] == ["100.0"] * 3
     assert "rejected.csv" in err or "Zoé" in err
@@ -181,7 +190,8 @@ def test_without_a_roster_any_name_is_accepted(cli, tmp_path):
 
 
 def test_a_blank_row_displaces_no_answer(built, cli, tmp_path):
-    """The form filled for one student, another's answers in a file of their own; then the files in the other order."""
+    """The form filled for one student, another's answers in a file of their own; then the files in the other
+    order."""
     rows = filled(built)
     david = [r for r in rows if r["student"] == "David O'Neil"]
     form = [r if r not in david else {**r, "answer": " "} for r in rows]

@@ -1,4 +1,5 @@
-"""What strangers call themselves, their files and their answers acts on no terminal, breaks no JSON and is no formula."""
+"""What strangers call themselves, their files and their answers acts on no terminal, breaks no JSON and is no
+formula."""
 
 from __future__ import annotations
 
@@ -150,9 +151,15 @@ def test_no_table_of_a_hostile_class_holds_a_formula_and_all_are_read_back(hosti
     assert "not what" not in told  # its own marks are read as they were written
     assert cli("--course", course, "report", out / "marks", "--out", out / "report")[0] == 0
     _, told, _ = cli(
-        "--course", course, "grade", "--from", out / "marks" / "marks.csv", "--issued", out / "issued.json",
+        "--course",
+        course,
+        "grade",
+        "--from",
+        out / "marks" / "marks.csv",
+        "--issued",
+        out / "issued.json",
         "--no-feedback",
-    )  # fmt: skip
+    )
     assert "changed by hand" not in told
     tables = [*out.rglob("*.csv")]
     assert {"marks.csv", "summary.csv", "rejected.csv", "answers.csv", "key.csv"} <= {p.name for p in tables}

@@ -1,4 +1,5 @@
-"""A course may speak one language; what no command is told it takes from the environment, else from the course."""
+"""A course may speak one language; what no command is told it takes from the environment, else from the
+course."""
 
 import json
 import os
@@ -15,17 +16,29 @@ from coursework.cli import run
 from coursework.language.environment import language_of
 
 FRENCH = re.compile(
-    r"[éèêàùçœ]|\b(?:le|la|les|une|des|est|sont|avec|pour|réponse|corrigé|manivelle|vitesse|points? sur|cours|fr)\b",
+    r"[éèêàùçœ]|\b(?:le|la|les|une|des|est|sont|avec|pour|réponse|corrigé|manivelle|vitesse|points? sur"
+    r"|cours|fr)\b",
     re.I,
 )
 
 
 @each_row(
     ("environment", "lang"),
-    [({"LANG": "fr_FR.UTF-8"}, "fr"), ({"LANG": "en"}, "en"), ({"LANG": "en_GB@euro"}, "en"), ({"LANG": "C.UTF-8"}, ""), ({"LANG": "C"}, ""),
-     ({"LANG": "POSIX"}, ""), ({}, ""), ({"LANG": ""}, ""), ({"LANG": "fr_FR", "LC_ALL": "en_US"}, "en"), ({"LANG": "fr", "LC_ALL": "C"}, ""),
-     ({"LANG": "fr", "LC_MESSAGES": "en_US"}, "en"), ({"LC_MESSAGES": "fr", "LC_ALL": ""}, "fr")],
-)  # fmt: skip
+    [
+        ({"LANG": "fr_FR.UTF-8"}, "fr"),
+        ({"LANG": "en"}, "en"),
+        ({"LANG": "en_GB@euro"}, "en"),
+        ({"LANG": "C.UTF-8"}, ""),
+        ({"LANG": "C"}, ""),
+        ({"LANG": "POSIX"}, ""),
+        ({}, ""),
+        ({"LANG": ""}, ""),
+        ({"LANG": "fr_FR", "LC_ALL": "en_US"}, "en"),
+        ({"LANG": "fr", "LC_ALL": "C"}, ""),
+        ({"LANG": "fr", "LC_MESSAGES": "en_US"}, "en"),
+        ({"LC_MESSAGES": "fr", "LC_ALL": ""}, "fr"),
+    ],
+)
 def test_the_language_of_the_environment(environment, lang):
     assert language_of(environment) == lang
 
@@ -143,9 +156,15 @@ def test_no_test_depends_on_the_language_of_the_machine():
 
 @pytest.mark.parametrize(
     ("around", "options", "lang", "first"),
-    [("fr_FR.UTF-8", (), "fr", "fr"), ("en_GB.UTF-8", (), "en", "en"), ("C", (), "fr", "fr"), ("de_DE", (), "fr", "fr"),
-     ("fr_FR.UTF-8", ("--lang", "en"), "en", "en"), ("C", ("--lang", "en,fr"), "en,fr", "en")],
-)  # fmt: skip
+    [
+        ("fr_FR.UTF-8", (), "fr", "fr"),
+        ("en_GB.UTF-8", (), "en", "en"),
+        ("C", (), "fr", "fr"),
+        ("de_DE", (), "fr", "fr"),
+        ("fr_FR.UTF-8", ("--lang", "en"), "en", "en"),
+        ("C", ("--lang", "en,fr"), "en,fr", "en"),
+    ],
+)
 def test_a_new_assignment_is_in_the_language_that_is_told_else_that_of_the_environment(
     told, tmp_path, around, options, lang, first
 ):

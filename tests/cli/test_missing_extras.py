@@ -1,4 +1,5 @@
-"""Without the libraries of an extra, each command that needs it names it in one line, before anything else is wrong."""
+"""Without the libraries of an extra, each command that needs it names it in one line, before anything else is
+wrong."""
 
 from __future__ import annotations
 
@@ -14,23 +15,37 @@ from coursework.cli.options import NeedingExtra
 #: By extra, commands that need it and whose other arguments are wrong or missing too.
 WITHOUT = {
     "site": [
-        "serve", "serve --demo", "serve --db nowhere/x.db --port 0", "preview", "preview nosuch",
-        "database show", "database show nothere.db", "database history", "database dump nothere.db nowhere",
-        "database restore nowhere nothere.db", "database new-key", "database sign-out",
-        "build nosuch --db nowhere/x.db", "grade nothere.csv --issued nope.json --db nowhere/x.db", "report --db nope.db",
+        "serve",
+        "serve --demo",
+        "serve --db nowhere/x.db --port 0",
+        "preview",
+        "preview nosuch",
+        "database show",
+        "database show nothere.db",
+        "database history",
+        "database dump nothere.db nowhere",
+        "database restore nowhere nothere.db",
+        "database new-key",
+        "database sign-out",
+        "build nosuch --db nowhere/x.db",
+        "grade nothere.csv --issued nope.json --db nowhere/x.db",
+        "report --db nope.db",
         "after nope.toml --db nowhere/x.db",
     ],
     "lti": ["lti keys new", "lti platform", "lti roster", "lti scores"],
     "scan": ["scan", "scan nothere.pdf --issued nope.json", "build nosuch --with scan"],
     "cluster": [
-        "build nosuch --cluster local:2", "grade nothere.csv --issued nope.json --cluster tcp://127.0.0.1:1",
-        "check nosuch --cluster local:2", "report nowhere --cluster local:2",
+        "build nosuch --cluster local:2",
+        "grade nothere.csv --issued nope.json --cluster tcp://127.0.0.1:1",
+        "check nosuch --cluster local:2",
+        "report nowhere --cluster local:2",
     ],
     "accuracy": ["accuracy", "accuracy nosuch"],
     "parquet": ["grade nothere.parquet --issued nope.json"],
-}  # fmt: skip
+}
 BLOCKED = (
-    "alembic argon2 cryptography cv2 dask distributed httpx itsdangerous jwt limits mpmath nbgrader psycopg pyarrow "
+    "alembic argon2 cryptography cv2 dask distributed httpx itsdangerous jwt limits mpmath nbgrader "
+    "psycopg pyarrow "
     "pypdfium2 python_multipart sqlalchemy starlette uvicorn zxingcpp"
 ).split()
 

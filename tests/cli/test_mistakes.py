@@ -44,16 +44,31 @@ def test_check_reports_a_broken_promise_with_status_1(cli, small_course):
     [
         (["show", "sloted_mechanism"], "did you mean 'slotted_mechanism'"),
         (["show", "slotted_mechanism", "--lang", "de"], "no language 'de'"),
-        (["show", "slotted_mechanism", "--seed", "-1"], "--seed': takes a whole number, 0 or more; found '-1'"),
-        (["show", "slotted_mechanism", "--seed", "1.5"], "--seed': takes a whole number, 0 or more; found '1.5'"),
+        (
+            ["show", "slotted_mechanism", "--seed", "-1"],
+            "--seed': takes a whole number, 0 or more; found '-1'",
+        ),
+        (
+            ["show", "slotted_mechanism", "--seed", "1.5"],
+            "--seed': takes a whole number, 0 or more; found '1.5'",
+        ),
         (["grade", "none.csv", "--issued", "."], "name the issued.json of the build"),
         (["solve", "slotted_mechanism", "--set", "r1"], "NAME=VALUE"),
         (["solve", "slotted_mechanism", "--set", "r1=3kg", "--only", "rA"], "r1 is in mm"),
         (["solve", "slotted_mechanism", "--set", "r1=-3", "--only", "rA"], "r1 must be positive"),
-        (["solve", "slotted_mechanism", "--set", "r1=3", "--only", "rA"], "rA needs r2 and theta2, which are not given; add --set r2=… --set theta2=…"),
+        (
+            ["solve", "slotted_mechanism", "--set", "r1=3", "--only", "rA"],
+            "rA needs r2 and theta2, which are not given; add --set r2=… --set theta2=…",
+        ),
         (["solve", "slotted_mechanism", "--set", "r9=3", "--only", "rA"], "no quantity 'r9'"),
-        (["solve", "slotted_mechanism", "--set", "r1=300", "--set", "r2=100", "--only", "rAA"], "did you mean 'rA'"),
-        (["solve", "slotted_mechanism", "--set", "r1=100", "--set", "r2=300", "--only", "swing"], "swing does not exist"),
+        (
+            ["solve", "slotted_mechanism", "--set", "r1=300", "--set", "r2=100", "--only", "rAA"],
+            "did you mean 'rA'",
+        ),
+        (
+            ["solve", "slotted_mechanism", "--set", "r1=100", "--set", "r2=300", "--only", "swing"],
+            "swing does not exist",
+        ),
         (["build", "slotted_mechanism", "--formats", "docx", "--out", "x"], "no 'docx'"),
         (["build", "slotted_mechanism", "--lang", "de", "--out", "x"], "no language 'de'"),
         (["build", "slotted_mechanism", "--variants", "0", "--out", "x"], "--variants"),
@@ -65,7 +80,7 @@ def test_check_reports_a_broken_promise_with_status_1(cli, small_course):
         (["buld"], "buld"),
         (["variant", "slotted_mechanism", "--sed", "3"], "--sed"),
     ],
-)  # fmt: skip
+)
 def test_a_users_mistake_is_one_line_and_status_2(cli, tmp_path, monkeypatch, arguments, told):
     monkeypatch.chdir(tmp_path)
     status, _, err = cli(*arguments)

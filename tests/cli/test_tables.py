@@ -14,10 +14,17 @@ from coursework.cli import run
 from coursework.system.tables import SPREADSHEETS, csv_text, decode, open_csv
 
 TABLES = {
-    "sheets/answers.csv", "sheets/handouts/pages.csv", "sheets/instructor/key.csv",
-    "marks/marks.csv", "marks/summary.csv", "marks/rejected.csv", "marks/changes.csv",
-    "marks/report/parts.csv", "marks/report/mistakes.csv", "scene/slotted_mechanism-cycle.csv",
-}  # fmt: skip
+    "sheets/answers.csv",
+    "sheets/handouts/pages.csv",
+    "sheets/instructor/key.csv",
+    "marks/marks.csv",
+    "marks/summary.csv",
+    "marks/rejected.csv",
+    "marks/changes.csv",
+    "marks/report/parts.csv",
+    "marks/report/mistakes.csv",
+    "scene/slotted_mechanism-cycle.csv",
+}
 NUMBERS = {
     "key.csv": {"value", "tolerance"},
     "marks.csv": {"points", "out_of"},
@@ -48,7 +55,7 @@ def answered(out):
 def whole_job(out, *options):
     """Build, two markings, report and scene; the exit status is 1 for the row of nobody."""
     (out / "class.csv").write_text("student\nÉmilie Lefèvre\nZoë\n", "utf-8")
-    made = ["slotted_mechanism", "--roster", out / "class.csv", "--formats", "html", "--out", out / "sheets"]  # fmt: skip
+    made = ["slotted_mechanism", "--roster", out / "class.csv", "--formats", "html", "--out", out / "sheets"]
     with_commas = ["--with", "booklet,decimal-comma"] if options else ["--with", "booklet"]
     assert command("build", *made, *with_commas) == 0
     rows = answered(out)
@@ -150,7 +157,9 @@ def test_an_unknown_sign_is_refused(tmp_path, capsys):
 
 
 def test_a_formula_stays_text_where_semicolons_part_the_cells():
-    (line,) = csv_text([{"a": "x;=cmd|'/c calc'!A1", "points": "0.5"}], ["a", "points"], SPREADSHEETS["comma"]).splitlines()[1:]  # fmt: skip
+    (line,) = csv_text(
+        [{"a": "x;=cmd|'/c calc'!A1", "points": "0.5"}], ["a", "points"], SPREADSHEETS["comma"]
+    ).splitlines()[1:]
     assert line == "\"x;'=cmd|'/c calc'!A1\";0,5"
 
 

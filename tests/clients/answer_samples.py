@@ -1,4 +1,5 @@
-"""Answers of every sort to a part, and for which feature a platform may judge each otherwise than our marking does."""
+"""Answers of every sort to a part, and for which feature a platform may judge each otherwise than our marking
+does."""
 
 from __future__ import annotations
 

@@ -1,7 +1,7 @@
 """A real Moodle for the tests: its PHP on the command line, its pages over HTTP.
 
-``COURSEWORK_MOODLE``: the folder of Moodle's code, with its ``config.php``; ``COURSEWORK_MOODLE_ADMIN``: name and password of its
-administrator, ``admin:…``, for what is fetched from its pages.
+``COURSEWORK_MOODLE``: the folder of Moodle's code, with its ``config.php``; ``COURSEWORK_MOODLE_ADMIN``: name
+and password of its administrator, ``admin:…``, for what is fetched from its pages.
 """
 
 from __future__ import annotations

@@ -1,9 +1,10 @@
 """Run the tests against other people's programs, after setting up what can be set up: ``make test-clients``.
 
-The players of QTI 3 come from npm, into ``build/clients``. Programs without a package are told by a folder of their code:
-``--moodle`` a checkout of Moodle (a database and ``config.php`` are made in ``build/clients``, and it is served while the tests
-run), ``--qti-sdk`` one of oat-sa/qti-sdk. PHP with its usual extensions, Node.js with npm, PostgreSQL and Chromium are those of
-this machine. What is missing is told, and its tests are skipped. Further arguments go to pytest.
+The players of QTI 3 come from npm, into ``build/clients``. Programs without a package are told by a folder of
+their code: ``--moodle`` a checkout of Moodle (a database and ``config.php`` are made in ``build/clients``,
+and it is served while the tests run), ``--qti-sdk`` one of oat-sa/qti-sdk. PHP with its usual extensions,
+Node.js with npm, PostgreSQL and Chromium are those of this machine. What is missing is told, and its tests
+are skipped. Further arguments go to pytest.
 """
 
 from __future__ import annotations
@@ -46,7 +47,8 @@ def players() -> dict[str, str]:
 
 
 def moodle(code: Path, stack: ExitStack) -> dict[str, str]:
-    """Install a Moodle of given code on a database of its own, serve it, and return the variables that name it."""
+    """Install a Moodle of given code on a database of its own, serve it, and return the variables that name
+    it."""
     from postgres_server import running
     from sqlalchemy import make_url
 
@@ -62,11 +64,21 @@ def moodle(code: Path, stack: ExitStack) -> dict[str, str]:
         port = free.getsockname()[1]
     (code / "config.php").unlink(missing_ok=True)
     options = {
-        "lang": "en", "wwwroot": f"http://127.0.0.1:{port}", "dataroot": data, "dbtype": "pgsql", "dbhost": database.host,
-        "dbport": database.port, "dbname": database.database, "dbuser": database.username, "dbpass": "none",
-        "fullname": "Tests", "shortname": "tests", "adminuser": "admin", "adminpass": ADMIN.partition(":")[2],
+        "lang": "en",
+        "wwwroot": f"http://127.0.0.1:{port}",
+        "dataroot": data,
+        "dbtype": "pgsql",
+        "dbhost": database.host,
+        "dbport": database.port,
+        "dbname": database.database,
+        "dbuser": database.username,
+        "dbpass": "none",
+        "fullname": "Tests",
+        "shortname": "tests",
+        "adminuser": "admin",
+        "adminpass": ADMIN.partition(":")[2],
         "adminemail": "admin@example.org",
-    }  # fmt: skip
+    }
     told = [f"--{name}={value}" for name, value in options.items()]
     command = [*PHP, "admin/cli/install.php", *told, "--non-interactive", "--agree-license"]
     subprocess.run(command, cwd=code, check=True, stdout=subprocess.DEVNULL)

@@ -1,9 +1,10 @@
 """What Canvas's own importers read from our packages. Canvas itself is no program that a test can bring up.
 
-``COURSEWORK_CANVAS_QTI`` names a checkout of the gem ``qti`` (github.com/instructure/qti), with which New Quizzes read a
-package; Ruby and the packages that ``canvas_reads.rb`` names must be there. ``COURSEWORK_CANVAS_MIGRATE`` names a checkout of
-``QTIMigrationTool`` (github.com/instructure/QTIMigrationTool), with which the classic quizzes read one, and needs ``lxml``
-in the Python that ``COURSEWORK_CANVAS_PYTHON`` names (this one unless told).
+``COURSEWORK_CANVAS_QTI`` names a checkout of the gem ``qti`` (github.com/instructure/qti), with which New
+Quizzes read a package; Ruby and the packages that ``canvas_reads.rb`` names must be there.
+``COURSEWORK_CANVAS_MIGRATE`` names a checkout of ``QTIMigrationTool``
+(github.com/instructure/QTIMigrationTool), with which the classic quizzes read one, and needs ``lxml`` in the
+Python that ``COURSEWORK_CANVAS_PYTHON`` names (this one unless told).
 """
 
 from __future__ import annotations

@@ -1,7 +1,8 @@
 """A real Moodle takes what is exported, and judges it as our marking does but for what ``lost.csv`` lists.
 
-Runs where ``COURSEWORK_MOODLE`` names the folder of Moodle's code (with its ``config.php``; PHP on the path). What is tried stays in
-a course of its own, deleted at the end. ``COURSEWORK_MOODLE_ADMIN``, ``name:password``, lets the tests of pages log in.
+Runs where ``COURSEWORK_MOODLE`` names the folder of Moodle's code (with its ``config.php``; PHP on the path).
+What is tried stays in a course of its own, deleted at the end. ``COURSEWORK_MOODLE_ADMIN``,
+``name:password``, lets the tests of pages log in.
 """
 
 from __future__ import annotations
@@ -71,7 +72,8 @@ def imported(tmp_path_factory):
 
 @pytest.fixture(scope="session")
 def figures():
-    """Answers by language and by what became of them; written where ``COURSEWORK_MOODLE_FIGURES`` says, for the docs."""
+    """Answers by language and by what became of them; written where ``COURSEWORK_MOODLE_FIGURES`` says, for
+    the docs."""
     counts = Counter()
     yield counts
     if path := os.environ.get("COURSEWORK_MOODLE_FIGURES"):
@@ -95,7 +97,8 @@ def test_every_exercise_is_imported_whole(imported, name, lang):
 @every_language
 @every_exercise
 def test_right_answers_get_full_marks(imported, name, lang):
-    """The answers that Moodle itself shows as right, and ours; a question of which it judges nothing has no mark."""
+    """The answers that Moodle itself shows as right, and ours; a question of which it judges nothing has no
+    mark."""
     one = imported(name, lang)
     attempts = [{"id": q["id"], "data": "right"} for q in one.questions]
     for question, item in zip(one.questions, one.items, strict=True):
@@ -193,7 +196,8 @@ def _shown(text):
 @pytest.mark.parametrize("filtered", [True, False], ids=["multilang on", "multilang off"])
 @pytest.mark.skipif(not ADMIN, reason="COURSEWORK_MOODLE_ADMIN names no administrator")
 def test_a_french_and_an_english_student_have_one_quiz(tmp_path, filtered):
-    """Each reads every question in their own language (both if the filter is off); both reports are marked alike."""
+    """Each reads every question in their own language (both if the filter is off); both reports are marked
+    alike."""
     names = ["slotted_mechanism", "grashof", "four_bar_positions"]
     drawn = of_exercises(COURSE, names, 2, 0, LANGS, None)
     course = f"{NAME}_two_languages_{int(filtered)}"
@@ -235,8 +239,12 @@ def test_a_french_and_an_english_student_have_one_quiz(tmp_path, filtered):
             shown = student["shown"][slot]
             assert f"[{code} · {lang}]" in shown
             assert (f"[{code} · {other}]" in shown) is not filtered
-            answers[slot] = {k: _right(p).replace(".", "." if lang == "en" else ",") if isinstance(_right(p), str) else _right(p)
-                             for k, p in enumerate(items[lang, code].questions, 1)}  # fmt: skip
+            answers[slot] = {
+                k: _right(p).replace(".", "." if lang == "en" else ",")
+                if isinstance(_right(p), str)
+                else _right(p)
+                for k, p in enumerate(items[lang, code].questions, 1)
+            }
         attempts.append({"attempt": student["attempt"], "answers": answers})
     marks = ask("finish", attempts=attempts)
     assert marks == [pytest.approx(sum(slot["mark"] for slot in slots))] * 2

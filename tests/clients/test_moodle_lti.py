@@ -1,12 +1,14 @@
-"""Links of a site against a real Moodle, in a real browser: a link is picked, opened, answered, and the points arrive.
+"""Links of a site against a real Moodle, in a real browser: a link is picked, opened, answered, and the
+points arrive.
 
 ``COURSEWORK_MOODLE``: the folder of Moodle's code, with its ``config.php``; the site is up, on this machine.
-``COURSEWORK_CHROMIUM``: the program of a Chromium; Playwright for Python drives it.
-``COURSEWORK_PICTURES``: a folder for pictures of the pages, where they are wanted; with ``COURSEWORK_MOODLE_ADMIN``, name and
-password of the administrator as ``admin:…``, that of the registration page too.
+``COURSEWORK_CHROMIUM``: the program of a Chromium; Playwright for Python drives it. ``COURSEWORK_PICTURES``:
+a folder for pictures of the pages, where they are wanted; with ``COURSEWORK_MOODLE_ADMIN``, name and password
+of the administrator as ``admin:…``, that of the registration page too.
 
-The tests make a course, its people and a tool of their own, and take them away. Moodle asks no address of this machine, so
-two of its settings are emptied meanwhile: for tests on one's own machine, and never on a site that others use.
+The tests make a course, its people and a tool of their own, and take them away. Moodle asks no address of
+this machine, so two of its settings are emptied meanwhile: for tests on one's own machine, and never on a
+site that others use.
 """
 
 import contextlib

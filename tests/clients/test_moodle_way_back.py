@@ -1,7 +1,9 @@
-"""The whole way back with a real Moodle: a quiz answered, its report marked, its gradebook filled and taken in.
+"""The whole way back with a real Moodle: a quiz answered, its report marked, its gradebook filled and taken
+in.
 
-Runs where ``COURSEWORK_MOODLE`` names the folder of a Moodle's code whose web answers, and ``COURSEWORK_MOODLE_LOGIN`` its
-administrator, ``admin:password``. It makes a course of its own, ``coursework-way-back``, each time anew. PHP must be at hand.
+Runs where ``COURSEWORK_MOODLE`` names the folder of a Moodle's code whose web answers, and
+``COURSEWORK_MOODLE_LOGIN`` its administrator, ``admin:password``. It makes a course of its own,
+``coursework-way-back``, each time anew. PHP must be at hand.
 """
 
 from __future__ import annotations
@@ -59,13 +61,17 @@ def cloze(seed):
             f"{{1:NUMERICAL:={gap}}}" if gap else "{1:MULTICHOICE_V:=b) oscillates~a) makes a full turn}"
         )
     asked = "".join(f"<p>{gap}</p>" for gap in gaps)
-    return f"""<question type="cloze"><name><text>whole</text></name><questiontext format="html"><text><![CDATA[
-        <p>A crank turns.</p><p>[{EXERCISE} · {seed} · v1 · en]</p>{asked}]]></text></questiontext></question>"""
+    return f"""<question type="cloze"><name><text>whole</text></name>
+        <questiontext format="html"><text><![CDATA[
+        <p>A crank turns.</p><p>[{EXERCISE} · {seed} · v1 · en]</p>{asked}]]></text></questiontext>
+        </question>"""
 
 
 def short(seed, part):
-    return f"""<question type="shortanswer"><name><text>{part}</text></name><questiontext format="html"><text><![CDATA[
-        <p>[{EXERCISE} · {seed} · v1 · en · {part}]</p>]]></text></questiontext><defaultgrade>1</defaultgrade><usecase>0</usecase>
+    return f"""<question type="shortanswer"><name><text>{part}</text></name>
+        <questiontext format="html"><text><![CDATA[
+        <p>[{EXERCISE} · {seed} · v1 · en · {part}]</p>]]></text></questiontext>
+        <defaultgrade>1</defaultgrade><usecase>0</usecase>
         <answer fraction="100"><text>x</text></answer></question>"""
 
 
@@ -184,7 +190,8 @@ def quiz(moodle):
 
 
 def column(quiz, lang):
-    """The title of the item's column as Moodle writes it: ``Week 3, marked (Real)``, ``(Brut)`` with the French pack."""
+    """The title of the item's column as Moodle writes it: ``Week 3, marked (Real)``, ``(Brut)`` with the
+    French pack."""
     header = quiz[f"gradebook_{lang}"].read_text("utf-8-sig").splitlines()[0]
     cells = next(csv.reader([header], delimiter=";" if lang == "fr" else ","))
     return next(title for title in cells if title.startswith(f"{ITEM} ("))

@@ -1,14 +1,15 @@
-"""Items in the real programs that play QTI: every exercise loads, right answers have full marks, and every other answer is
-marked as we mark it, or differs under a feature that ``lost.csv`` lists.
+"""Items in the real programs that play QTI: every exercise loads, right answers have full marks, and every
+other answer is marked as we mark it, or differs under a feature that ``lost.csv`` lists.
 
 Each runs where an environment variable names what it needs:
 
 ``COURSEWORK_QTI_SDK``
-    The ``src`` folder of the qti-sdk (oat-sa/qti-sdk), for QTI 2.1; with ``php`` on the path, its extensions dom and mbstring.
-    Its folder ``qtism/data/storage/xml/schemes`` holds the schemas of QTI 2.1 and 3.0.
+    The ``src`` folder of the qti-sdk (oat-sa/qti-sdk), for QTI 2.1; with ``php`` on the path, its extensions
+    dom and mbstring. Its folder ``qtism/data/storage/xml/schemes`` holds the schemas of QTI 2.1 and 3.0.
 ``COURSEWORK_QTI_PLAYERS``
-    The ``node_modules`` where ``npm install @citolab/qti-components qti3-item-player vue@2`` was run, for QTI 3; with
-    ``playwright`` for Python, and Chromium by ``COURSEWORK_CHROMIUM`` (``/usr/bin/chromium`` unless told).
+    The ``node_modules`` where ``npm install @citolab/qti-components qti3-item-player vue@2`` was run, for QTI
+    3; with ``playwright`` for Python, and Chromium by ``COURSEWORK_CHROMIUM`` (``/usr/bin/chromium`` unless
+    told).
 ``COURSEWORK_QTI_EXERCISES``
     Names of exercises, parted by commas; all unless told.
 """
@@ -47,8 +48,8 @@ needs_sdk = pytest.mark.skipif(not SDK, reason="COURSEWORK_QTI_SDK names no qti-
 needs_players = pytest.mark.skipif(not PLAYERS, reason="COURSEWORK_QTI_PLAYERS names no node_modules")
 every_exercise = pytest.mark.parametrize("name", NAMES)
 
-#: What the schemas of the sdk lack or mistake: a namespace of formulas, a schema of speech that libxml2 cannot read, one that
-#: is on the network.
+#: What the schemas of the sdk lack or mistake: a namespace of formulas, a schema of speech that libxml2
+#: cannot read, one that is on the network.
 _XLINK = "".join(
     f'<xs:attribute name="{name}"/>'
     for name in "href type role arcrole title show actuate label from to".split()

@@ -1,7 +1,8 @@
-"""Questions of STACK in a real Moodle: they import, prove themselves, and judge what is typed as our marking does.
+"""Questions of STACK in a real Moodle: they import, prove themselves, and judge what is typed as our marking
+does.
 
-``COURSEWORK_STACK`` names the folder of the code of a Moodle that has STACK, with Maxima and its image built: see
-``docs/platforms/stack.md``. ``php`` must be there. Each run makes a course of its own, and deletes it.
+``COURSEWORK_STACK`` names the folder of the code of a Moodle that has STACK, with Maxima and its image built:
+see ``docs/platforms/stack.md``. ``php`` must be there. Each run makes a course of its own, and deletes it.
 """
 
 from __future__ import annotations
@@ -97,7 +98,8 @@ def typed(value, sign, digits=6):
 
 
 def sets_of(given, variant, sign):
-    """Answers to a whole variant, way by way: what is typed in STACK, and the same as our marking is handed it."""
+    """Answers to a whole variant, way by way: what is typed in STACK, and the same as our marking is handed
+    it."""
     other = "," if sign == "." else "."
     ways = {
         "printed": lambda p, v, u: significant(v, 5).replace(".", sign).replace("−", "-"),

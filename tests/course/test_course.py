@@ -201,17 +201,42 @@ def test_a_record_is_marked_by_the_values_it_holds_not_by_its_seed(course):
     [
         ("exercises/crank_pin.py", "EXERCISE = Exercise", "EXERCICE = Exercise", "states no EXERCISE"),
         ("exercises/crank_pin.py", 'Part("y"', 'Part("x"', "two parts are called 'x'"),
-        ("exercises/crank_pin.py", 'points=2', 'points=-2', "points must be positive"),
-        ("exercises/crank_pin.py", 'points=2', 'kind="nombre"', "no kind 'nombre'"),
-        ("exercises/crank_pin.py", "def pin_off_the_axes(theta)", "def pin_off_the_axes(tetha)", "needs tetha, which is not given; did you mean 'theta'"),
-        ("exercises/crank_pin.py", '"r": drawn(50, 200, step=5, unit="mm")', '"r": drawn(50, 200, unit="furlong")', ": the unit of r: no unit 'furlong'; units are"),
-        ("exercises/crank_pin.py", 'Part("y", unit="mm")', 'Part("y", unit="furlong")', "the unit of part 'y': no unit 'furlong'"),
-        ("solutions/crank_pin.py", "#: Values known", "UNITS = {'x': 'furlong'}\n#:", "solutions/crank_pin.py: UNITS of x: no unit 'furlong'"),
+        ("exercises/crank_pin.py", "points=2", "points=-2", "points must be positive"),
+        ("exercises/crank_pin.py", "points=2", 'kind="nombre"', "no kind 'nombre'"),
+        (
+            "exercises/crank_pin.py",
+            "def pin_off_the_axes(theta)",
+            "def pin_off_the_axes(tetha)",
+            "needs tetha, which is not given; did you mean 'theta'",
+        ),
+        (
+            "exercises/crank_pin.py",
+            '"r": drawn(50, 200, step=5, unit="mm")',
+            '"r": drawn(50, 200, unit="furlong")',
+            ": the unit of r: no unit 'furlong'; units are",
+        ),
+        (
+            "exercises/crank_pin.py",
+            'Part("y", unit="mm")',
+            'Part("y", unit="furlong")',
+            "the unit of part 'y': no unit 'furlong'",
+        ),
+        (
+            "solutions/crank_pin.py",
+            "#: Values known",
+            "UNITS = {'x': 'furlong'}\n#:",
+            "solutions/crank_pin.py: UNITS of x: no unit 'furlong'",
+        ),
         ("exercises/crank_pin.py", "import polar", "import poler", "poler"),
         ("solutions/crank_pin.py", '@mistake("x", "y")', '@mistake("x", "z")', "no quantity 'z'"),
         ("solutions/crank_pin.py", 'kind="constant"', "share=5", "between 0 and 1"),
         ("exercises/crank_pin.py", "O, A = 0, polar", "O, A = zero, polar", "figure (crank_pin.py, line"),
-        ("exercises/crank_pin.py", "return theta % 90", "return tetha % 90", "pin_off_the_axes (crank_pin.py, line"),
+        (
+            "exercises/crank_pin.py",
+            "return theta % 90",
+            "return tetha % 90",
+            "pin_off_the_axes (crank_pin.py, line",
+        ),
         ("solutions/crank_pin.py", "return r * omega\n", "return r * omegga\n", "v (crank_pin.py, line"),
         ("exercises/course.toml", "[title]", "title = 'Mine'\n[other]", "write [title]"),
         ("exercises/crank_pin.fr.md.j2", "{{ theta }}", "{{ theta + 1 }}", "an expression fails"),
@@ -221,7 +246,7 @@ def test_a_record_is_marked_by_the_values_it_holds_not_by_its_seed(course):
         ("exercises/crank_pin.fr.md.j2", "{{ theta }}", "{{ theta", "line"),
         ("exercises/crank_pin.fr.md.j2", "$x$", r"$\foo$", "foo"),
     ],
-)  # fmt: skip
+)
 def test_an_authors_slip_names_its_file_and_what_would_do(small_course, file, old, new, told):
     path = small_course / file
     text = path.read_text("utf-8")
@@ -233,14 +258,20 @@ def test_an_authors_slip_names_its_file_and_what_would_do(small_course, file, ol
 
 
 SLIPS_IN_GIVEN = {
-    "chosen(4, 5)": (30, "the cases of chosen(…) are names in quotes; found 4, 5: numbers are drawn(low, high, step=…)"),
+    "chosen(4, 5)": (
+        30,
+        "the cases of chosen(…) are names in quotes; found 4, 5: numbers are drawn(low, high, step=…)",
+    ),
     "chosen('a')": (30, "chosen(…) takes two cases or more, all different; found 'a'"),
     "fixed('5')": (30, "fixed(…) takes a number; found '5'"),
-    "drawn('a', 5)": (30, "a bound of drawn(low, high) is a number or a function of quantities declared before; found 'a'"),
+    "drawn('a', 5)": (
+        30,
+        "a bound of drawn(low, high) is a number or a function of quantities declared before; found 'a'",
+    ),
     "drawn(5, 1)": (30, "drawn(low, high) takes the smaller bound first; found 5, 1"),
     "drawn(1, 5, step=0)": (30, "a step must be positive; found 0"),
     "5": (28, "r is given as drawn(…), chosen(…) or fixed(…); found 5"),
-}  # fmt: skip
+}
 
 
 def test_what_is_given_wrongly_is_told_with_its_file_and_line(small_course):
@@ -270,7 +301,10 @@ def test_what_every_variant_says_alike_is_known_without_a_variant(tmp_path):
     from coursework.course.texts import constants
 
     path = tmp_path / "x.en.md.j2"
-    alike = "# T\n\n{% for n in numbers %}{{ n }}{% endfor %}\n\n## a\nAlike.\n- I: one\n\n## b\n{{ r }} long.\n- I: {{ r }}\n"
+    alike = (
+        "# T\n\n{% for n in numbers %}{{ n }}{% endfor %}\n\n## a\nAlike.\n- I: one\n\n## b\n{{ r }} "
+        "long.\n- I: {{ r }}\n"
+    )
     path.write_text(alike + "\n## c\n{% if r %}Long.{% endif %}\n- I: other\n", "utf-8")
     assert constants(path).texts == {"a": "Alike."}
     assert constants(path).labels == {("a", "I"): "one"}

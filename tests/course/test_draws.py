@@ -163,7 +163,8 @@ def test_a_mistake_that_must_show_does_or_changes_nothing(small_course):
 
 UNUSABLE = {
     "def f(vv):\n    return vv > 0": "a constraint cannot be evaluated: f needs vv, which is not given",
-    "def f(v):\n    return v > 0\n\n\nf.__name__ = 'x'": "x is a constraint and a quantity; rename the constraint",
+    "def f(v):\n    return v > 0\n\n\nf.__name__ = 'x'": "x is a constraint and a quantity; "
+    "rename the constraint",
 }
 
 

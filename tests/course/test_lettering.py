@@ -21,7 +21,8 @@ def guide(course):
 
 
 def test_the_order_of_a_seed_is_the_same_for_ever():
-    """Frozen: another order would give the sheets that were issued another key, were it not for their records."""
+    """Frozen: another order would give the sheets that were issued another key, were it not for their
+    records."""
     part = Part("nature", kind="choice", choices=("rotation", "translation", "general"))
     found = ["".join(case[0] for case in printed_order("x", seed, part)) for seed in range(8)]
     assert found == FROZEN

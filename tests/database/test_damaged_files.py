@@ -1,4 +1,5 @@
-"""A file of SQLite that was damaged: what of it can be read is read, all else is told in a line, and nothing hangs."""
+"""A file of SQLite that was damaged: what of it can be read is read, all else is told in a line, and nothing
+hangs."""
 
 import random
 import sqlite3

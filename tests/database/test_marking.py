@@ -172,10 +172,13 @@ def test_a_state_is_of_the_files_that_an_exercise_stands_on(course, tmp_path, fi
 def test_the_engine_is_all_that_a_mark_is_computed_by(course):
     """What is imported by marking, and by whom it imports, in a new process."""
     code = (
-        "import sys, coursework.gradebook.class_marking, coursework.course.course as c; from pathlib import Path;"
+        "import sys, coursework.gradebook.class_marking, coursework.course.course as c; from pathlib "
+        "import Path;"
         "from coursework.course.variant import Variant; from coursework.marking.marking import mark;"
-        "v = c.opened(sys.argv[1], Variant)['crank_pin'].variant(3); mark(v, dict.fromkeys((p.id for p in v.parts), '7'));"
-        "print(*(m.__file__ for n, m in sys.modules.items() if n.partition('.')[0] == 'coursework'), sep='\\n')"
+        "v = c.opened(sys.argv[1], Variant)['crank_pin'].variant(3); mark(v, dict.fromkeys((p.id for p "
+        "in v.parts), '7'));"
+        "print(*(m.__file__ for n, m in sys.modules.items() if n.partition('.')[0] == 'coursework'), "
+        "sep='\\n')"
     )
     done = subprocess.run(
         [sys.executable, "-c", code, str(course.folder.root)], capture_output=True, text=True, check=True

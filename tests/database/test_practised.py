@@ -1,4 +1,5 @@
-"""What somebody practises, on each database: progress by exercise, drafts of two pages, the pool of variants."""
+"""What somebody practises, on each database: progress by exercise, drafts of two pages, the pool of
+variants."""
 
 from datetime import UTC, datetime, timedelta
 from threading import Barrier, Thread

@@ -1,4 +1,5 @@
-"""Pictures from outside and several figures: shown in every format with their words, and nothing in them runs."""
+"""Pictures from outside and several figures: shown in every format with their words, and nothing in them
+runs."""
 
 from __future__ import annotations
 

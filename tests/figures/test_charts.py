@@ -15,8 +15,10 @@ from coursework.figures.plot import Axis, Plot, _title_lines
 from coursework.figures.typesetting import converted
 
 LONG = {
-    "fr": "Réponses justes\u00a0: L’angle de transmission et l’avantage mécanique d’un étau-limeur à retour rapide désaxé",
-    "en": "Right answers: Transmission angle and mechanical advantage of an offset quick-return shaper mechanism",
+    "fr": "Réponses justes\u00a0: L’angle de transmission et l’avantage mécanique d’un étau-limeur à retour "
+    "rapide désaxé",
+    "en": "Right answers: Transmission angle and mechanical advantage of an offset quick-return shaper "
+    "mechanism",
 }
 TURN = np.linspace(0, 360, 20)
 DRAWN = {

@@ -1,4 +1,5 @@
-"""Drawings on a dark page: each colour of the palette has a counterpart that is seen, and only ours are changed."""
+"""Drawings on a dark page: each colour of the palette has a counterpart that is seen, and only ours are
+changed."""
 
 import itertools
 import re

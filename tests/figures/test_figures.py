@@ -31,8 +31,11 @@ from coursework.figures import (
 def test_the_drawing_is_to_scale():
     figure = four_bar()
     paths = [points for points in strokes(figure) if len(points) == 2]
-    heavy = [p for p, item in zip(strokes(figure), ET.fromstring(figure.svg())[1], strict=True)
-             if item.get("stroke-width") == "0.6"]  # fmt: skip
+    heavy = [
+        p
+        for p, item in zip(strokes(figure), ET.fromstring(figure.svg())[1], strict=True)
+        if item.get("stroke-width") == "0.6"
+    ]
     assert len(paths) > len(heavy) == 3
     lengths = [abs(points[1] - points[0]) for points in heavy]
     assert lengths == pytest.approx([70 * figure.scale, 180 * figure.scale, 120 * figure.scale], abs=0.15)

@@ -1,4 +1,5 @@
-"""What a question counts, what an answer earns and what points are worth may change after an exam, and change back."""
+"""What a question counts, what an answer earns and what points are worth may change after an exam, and change
+back."""
 
 import json
 
@@ -45,7 +46,8 @@ def margins(of, digits):
 
 
 def marks(*steps):
-    """Points, what they are out of, and the mark of each student with some steps: kind, part, value and answer."""
+    """Points, what they are out of, and the mark of each student with some steps: kind, part, value and
+    answer."""
     decisions = Decisions(
         Decision("", "x" if part else "", "", part, kind, value, "", answer or None)
         for kind, part, value, answer in steps

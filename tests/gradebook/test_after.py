@@ -1,4 +1,5 @@
-"""The evening after an exam from a folder of marks: what is left, a change with its preview, confirmed and undone."""
+"""The evening after an exam from a folder of marks: what is left, a change with its preview, confirmed and
+undone."""
 
 import json
 import re
@@ -17,7 +18,8 @@ NAMES = [f"S{k:02}" for k in range(12)]
 
 @pytest.fixture
 def marked(small_course, tmp_path):
-    """Twelve students, of whom the six best answer v wrongly and the others rightly; a wrong sign, and two answers that wait."""
+    """Twelve students, of whom the six best answer v wrongly and the others rightly; a wrong sign, and two
+    answers that wait."""
     course = coursework.open_course(small_course)
     papers = issue(tmp_path, [item(course, name, 5) for name in NAMES])
     rows = []

@@ -20,7 +20,8 @@ NAMES = ("Ada Lovelace", "Bo Diddley", "Cy Young", "N9101", "N9102", "N9103")
 def exam(small_course, tmp_path):
     (tmp_path / "class.csv").write_text(ROSTER)
     (tmp_path / "final.toml").write_text(
-        'roster = "class.csv"\nidentity = ["number"]\nformats = "ipynb"\nsolutions = false\nanonymous = true\n'
+        'roster = "class.csv"\nidentity = ["number"]\nformats = "ipynb"\nsolutions = false\nanonymous '
+        "= true\n"
         'secret = "0123456789abcdef0123456789abcdef"\n[[exercises]]\nname = "crank_pin"\n'
     )
     out = tmp_path / "out"

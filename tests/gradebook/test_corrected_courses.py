@@ -1,4 +1,5 @@
-"""A process that marks for several courses: the records of a corrected course are those of the course before."""
+"""A process that marks for several courses: the records of a corrected course are those of the course
+before."""
 
 import shutil
 

@@ -74,8 +74,10 @@ def paper(tmp_path, issued_path, rows, lang="en", **more):
 def test_a_paper_has_one_total_and_mark_and_counts_what_was_not_handed_in(tmp_path, issued_file):
     found = paper(tmp_path, issued_file(), answers("Ada", NAMES[0], 5))
     assert [s.handout.exercise for s in found.sheets] == list(NAMES)
-    worth = [sum(p.points for p in COURSE[n].variant(s, "en", q).parts) for n, s, q in
-             ((NAMES[0], 5, PARTS), (NAMES[1], 6, None))]  # fmt: skip
+    worth = [
+        sum(p.points for p in COURSE[n].variant(s, "en", q).parts)
+        for n, s, q in ((NAMES[0], 5, PARTS), (NAMES[1], 6, None))
+    ]
     assert (found.points, found.out_of) == (worth[0], sum(worth))
     assert float(found.mark) == pytest.approx(20 * worth[0] / sum(worth), abs=0.25)
     assert {line.verdict for line in found.sheets[1].lines} == {"missing"}

@@ -1,5 +1,5 @@
-"""Feedback that is printed again: a kill at any moment loses no sheet, what a teacher wrote on one is kept, and who answered
-counts."""
+"""Feedback that is printed again: a kill at any moment loses no sheet, what a teacher wrote on one is kept,
+and who answered counts."""
 
 from __future__ import annotations
 
@@ -23,7 +23,8 @@ OLD = {"ada.html", "bo.html", "cy.html"}
 
 @pytest.fixture(scope="module")
 def built(tmp_path_factory):
-    """Three students of a small course who were marked, and answers that came since: Bo's other, Cy's gone."""
+    """Three students of a small course who were marked, and answers that came since: Bo's other, Cy's
+    gone."""
     folder = tmp_path_factory.mktemp("stopped")
     assert run(["new", str(folder / "small")]) == 0
     (folder / "class.csv").write_text("student\nAda\nBo\nCy\n", "utf-8")
@@ -65,7 +66,8 @@ def files_of(folder):
 
 
 def killed_at(folder, moment):
-    """Mark in another process that is killed before it moves or takes away the file of that number; whether it was."""
+    """Mark in another process that is killed before it moves or takes away the file of that number; whether
+    it was."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", DeprecationWarning)  # of threads; none of them prints
         child = os.fork()

@@ -1,4 +1,5 @@
-"""Two different sheets of one student in two files: whose each is, a folder's or a file's name tells, or a person."""
+"""Two different sheets of one student in two files: whose each is, a folder's or a file's name tells, or a
+person."""
 
 from __future__ import annotations
 

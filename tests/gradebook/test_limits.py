@@ -1,4 +1,5 @@
-"""Files beyond all measure: told with their limit, before they are unpacked; what is read is read in steps, not in squares."""
+"""Files beyond all measure: told with their limit, before they are unpacked; what is read is read in steps,
+not in squares."""
 
 from __future__ import annotations
 

@@ -1,4 +1,5 @@
-"""Notebooks whose tags or metadata are gone, whose cells were cut or joined, are known again, told, and marked."""
+"""Notebooks whose tags or metadata are gone, whose cells were cut or joined, are known again, told, and
+marked."""
 
 from __future__ import annotations
 

@@ -115,7 +115,10 @@ def test_a_paper_without_tags_or_metadata_is_known_by_what_it_prints(tmp_path):
     rows = read(tmp_path, cells)
     assert placed(rows) == BOTH
     assert all("no cell is tagged" in r.warning for r in rows)
-    printed = "# Midterm\n\n**Name:** Ada — Group: 2\n\ncrank\\_pin · 5 · v1\n\ngrashof · 12 · v1\n\n## Your answers"
+    printed = (
+        "# Midterm\n\n**Name:** Ada — Group: 2\n\ncrank\\_pin · 5 · v1\n\ngrashof · 12 · v1\n\n## Your "
+        "answers"
+    )
     content = {
         "cells": [{"cell_type": "markdown", "metadata": {}, "source": printed}, *cells],
         "metadata": {},

@@ -1,4 +1,5 @@
-"""A platform's own export of its gradebook comes back with one column filled, and every other byte as it was."""
+"""A platform's own export of its gradebook comes back with one column filled, and every other byte as it
+was."""
 
 from __future__ import annotations
 
@@ -17,7 +18,10 @@ from coursework.cli import run
 from coursework.gradebook.class_points import Scored
 from coursework.system.cells import CellTable
 
-HEADER = "student,points,out_of,percent,correct,follow_through,mistake,slip,accepted,partial,wrong,wrong_unit,missing_unit,unreadable,to_mark,missing,Email address,SIS User ID,ID number\n"
+HEADER = (
+    "student,points,out_of,percent,correct,follow_through,mistake,slip,accepted,partial,wrong,wrong_unit,"
+    "missing_unit,unreadable,to_mark,missing,Email address,SIS User ID,ID number\n"
+)
 
 
 def summary(folder: Path, *lines: tuple[str, ...]) -> Path:

@@ -1,4 +1,5 @@
-"""What platforms export is read as it comes: every response ends as marked, rejected with its reason, or blank."""
+"""What platforms export is read as it comes: every response ends as marked, rejected with its reason, or
+blank."""
 
 from __future__ import annotations
 
@@ -33,7 +34,8 @@ def rows_of(path, data=None):
 
 
 def test_a_report_of_moodle_has_the_points_that_were_found_by_hand(tmp_path):
-    """A 7 of Moodle's is 9 of ours, for the unit that it ignored; one error and the right method after it 8 and not 3."""
+    """A 7 of Moodle's is 9 of ours, for the unit that it ignored; one error and the right method after it 8
+    and not 3."""
     book = graded(tmp_path, RECORDED / "moodle_responses_en.csv")
     by_student = {row["student"]: row for row in table(tmp_path / "marks/summary.csv")}
     with (RECORDED / "moodle_responses_en.csv").open(encoding="utf-8-sig") as file:
@@ -218,7 +220,10 @@ def test_another_version_of_the_exercise_is_not_marked(tmp_path):
 
 
 def test_columns_are_found_whatever_the_language_calls_them():
-    header = "Nachname,Vorname,E-Mail-Adresse,Status,Begonnen,Beendet,Verbrauchte Zeit,Bewertung/9,Frage 1,Antwort 1,Frage 2,Antwort 2"
+    header = (
+        "Nachname,Vorname,E-Mail-Adresse,Status,Begonnen,Beendet,Verbrauchte Zeit,Bewertung/9,Frage "
+        "1,Antwort 1,Frage 2,Antwort 2"
+    )
     columns = columns_of(header.split(","))
     assert columns.questions == ((8, 9), (10, 11))
     assert (columns.state, columns.completed) == (3, 5)
@@ -389,10 +394,14 @@ def responses_in(path) -> list[str]:
 @pytest.mark.parametrize(
     "name",
     [
-        "moodle_responses_en.csv", "moodle_responses.csv", "moodle_responses.json", "moodle_responses_fr.csv", "canvas_analysis.csv",
+        "moodle_responses_en.csv",
+        "moodle_responses.csv",
+        "moodle_responses.json",
+        "moodle_responses_fr.csv",
+        "canvas_analysis.csv",
         "qti_result.xml",
     ],
-)  # fmt: skip
+)
 def test_every_response_ends_as_marked_rejected_or_blank(tmp_path, name):
     book = graded(tmp_path, RECORDED / name)
     marks = table(tmp_path / "marks/marks.csv")

@@ -224,21 +224,28 @@ def test_a_part_accepted_without_an_answer_has_its_line(small_course, issued, ca
 
 
 def test_names_that_look_alike_are_one_in_every_file(small_course, tmp_path):
-    """Roster, answers, acceptance and earlier marks, with accents and apostrophes as different systems write them."""
+    """Roster, answers, acceptance and earlier marks, with accents and apostrophes as different systems write
+    them."""
     names = ["José García", "Bob O'Neil"]
     (tmp_path / "class.csv").write_text("\n".join(["student", *names]), "utf-8")
     out, alike = tmp_path / "out", ["Jose\u0301  GARCI\u0301A", "bob o’neil"]
-    assert course_run(
-        small_course, "build", "--roster", tmp_path / "class.csv", "--formats", "html", "--out", out
-    ) == 0  # fmt: skip
+    assert (
+        course_run(
+            small_course, "build", "--roster", tmp_path / "class.csv", "--formats", "html", "--out", out
+        )
+        == 0
+    )
     rows = [f"{name},crank_pin,,{part},1" for name in alike for part in ("x", "y")]
     (tmp_path / "answers.csv").write_text("\n".join(["student,exercise,seed,part,answer", *rows]), "utf-8")
     (tmp_path / "by_hand.csv").write_text("student,exercise,part\nBOB O‘NEIL,crank_pin,x\n", "utf-8")
     assert grade(small_course, out, "--accepted", tmp_path / "by_hand.csv") == 0
     marks = out / "marks" / "marks.csv"
     assert [(m["student"], m["verdict"] == "accepted") for m in table(marks)] == [
-        (names[0], False), (names[0], False), (names[1], True), (names[1], False),
-    ]  # fmt: skip
+        (names[0], False),
+        (names[0], False),
+        (names[1], True),
+        (names[1], False),
+    ]
     text = marks.read_text("utf-8")
     marks.write_text(text.replace(names[0], alike[0]).replace(names[1], alike[1]), "utf-8")
     assert grade(small_course, out, "--accepted", tmp_path / "by_hand.csv") == 0
@@ -474,8 +481,18 @@ def test_feedback_replaces_its_own_sheets_and_no_other_file(small_course, issued
     assert found == {"ada.pdf", "bo.pdf", "notes.md", "old/ada.pdf"}, "Cy has no marks any more"
 
 
-@pytest.mark.parametrize("content", [None, {}, {"a.docx": "x"}, {"a.ipynb": "{"}, {"a.csv": ""}, {"a.csv": "form"},
-                                     {"a.csv": "student,exercise,seed,part,answer\nZoe,crank_pin,1,y,3\n"}])  # fmt: skip
+@pytest.mark.parametrize(
+    "content",
+    [
+        None,
+        {},
+        {"a.docx": "x"},
+        {"a.ipynb": "{"},
+        {"a.csv": ""},
+        {"a.csv": "form"},
+        {"a.csv": "student,exercise,seed,part,answer\nZoe,crank_pin,1,y,3\n"},
+    ],
+)
 def test_answers_in_which_nothing_can_be_marked_leave_the_marks_that_were_there(
     small_course, issued, capsys, content
 ):

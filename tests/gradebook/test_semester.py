@@ -1,4 +1,5 @@
-"""A semester: marks of several assignments out of 20, weighted, with what is provisional and who was absent."""
+"""A semester: marks of several assignments out of 20, weighted, with what is provisional and who was
+absent."""
 
 import csv
 import json
@@ -7,9 +8,9 @@ import pytest
 
 from coursework.cli import run
 
-COLUMNS = "student,number,Groupe,points,out_of,mark,percent,provisional,correct,wrong,unreadable,to_mark,missing".split(
-    ","
-)
+COLUMNS = (
+    "student,number,Groupe,points,out_of,mark,percent,provisional,correct,wrong,unreadable,to_mark,missing"
+).split(",")
 
 
 def write(path, rows):
@@ -24,19 +25,41 @@ def line(student, number, group, mark, *, answered=1, waiting="", percent=""):
 
 @pytest.fixture
 def year(tmp_path):
-    """A midterm out of 20, a final out of 10, and a test without a scale; Bo is called otherwise in the final."""
-    write(tmp_path / "midterm" / "marks" / "summary.csv", [
-        COLUMNS, line("Ada Byron", "1", "A", "12.5"), line("Bo Roux", "2", "B", "8", waiting="1"),
-        line("Cy Ray", "3", "B", "0", answered=0), line("Di Om", "4", "A", "0", answered=0), line("Jean Petit", "5", "A", "10"),
-        line("Jean Petit (6)", "6", "A", "14"),
-    ])  # fmt: skip
-    write(tmp_path / "midterm" / "attendance.csv", [
-        ["student", "present"], ["Cy Ray", "Présent"], ["Di Om", "ABJ"], ["Ada Byron", ""],
-    ])  # fmt: skip
-    write(tmp_path / "final" / "marks" / "summary.csv", [
-        COLUMNS, line("Ada Byron", "1", "A", "8"), line("Roux Bo", "2", "B", "5"), line("Cy Ray", "3", "B", "10"),
-        line("Di Om", "4", "A", "9"), line("Jean Petit", "6", "A", "6"), line("Eve Lau", "7", "A", "0", answered=0),
-    ])  # fmt: skip
+    """A midterm out of 20, a final out of 10, and a test without a scale; Bo is called otherwise in the
+    final."""
+    write(
+        tmp_path / "midterm" / "marks" / "summary.csv",
+        [
+            COLUMNS,
+            line("Ada Byron", "1", "A", "12.5"),
+            line("Bo Roux", "2", "B", "8", waiting="1"),
+            line("Cy Ray", "3", "B", "0", answered=0),
+            line("Di Om", "4", "A", "0", answered=0),
+            line("Jean Petit", "5", "A", "10"),
+            line("Jean Petit (6)", "6", "A", "14"),
+        ],
+    )
+    write(
+        tmp_path / "midterm" / "attendance.csv",
+        [
+            ["student", "present"],
+            ["Cy Ray", "Présent"],
+            ["Di Om", "ABJ"],
+            ["Ada Byron", ""],
+        ],
+    )
+    write(
+        tmp_path / "final" / "marks" / "summary.csv",
+        [
+            COLUMNS,
+            line("Ada Byron", "1", "A", "8"),
+            line("Roux Bo", "2", "B", "5"),
+            line("Cy Ray", "3", "B", "10"),
+            line("Di Om", "4", "A", "9"),
+            line("Jean Petit", "6", "A", "6"),
+            line("Eve Lau", "7", "A", "0", answered=0),
+        ],
+    )
     (tmp_path / "final" / "issued.json").write_text(
         json.dumps({"assignment": {"mark": {"of": 10, "step": 0.5}}})
     )

@@ -55,9 +55,19 @@ def written(folder):
 
 def told(book):
     return (
-        book.rows_in, book.blanks, book.marked, book.rejected, book.warnings, book.faults, book.waiting, book.changes,
-        book.seen, list(book.students.items()), list(book.exercises.items()), book.unread(),
-    )  # fmt: skip
+        book.rows_in,
+        book.blanks,
+        book.marked,
+        book.rejected,
+        book.warnings,
+        book.faults,
+        book.waiting,
+        book.changes,
+        book.seen,
+        list(book.students.items()),
+        list(book.exercises.items()),
+        book.unread(),
+    )
 
 
 def notebook(student, seed, **answers):
@@ -69,7 +79,8 @@ def notebook(student, seed, **answers):
 
 
 def files_of(course, folder):
-    """A class as it comes: rows of a sheet far apart, in several files and kinds; twice, empty, forged, unreadable, of strangers."""
+    """A class as it comes: rows of a sheet far apart, in several files and kinds; twice, empty, forged,
+    unreadable, of strangers."""
     students = {"Ada": 5, "Bo": 6, "Cy": 8, "Di": 9, "Eve": 10, "Flo": 11, "Gil": 12}
     items = [item(course, s, seed) for s, seed in students.items()] + [item(course, "Ada", 7, sitting=2)]
     issued = issue(folder, items)

@@ -7,8 +7,10 @@ from coursework.gradebook.stack_responses import stack_answers
 
 #: As STACK 4.11 summed up an attempt in a Moodle 4.5, of `four_bar_positions`, in French.
 RECORDED = (
-    'Seed: 1; ans1: "b" [score]; ans2: 12,5 mm [invalid]; ans3: 1,2.3 [invalid]; ans4: 1 [score]; ans5: "2" [score]; '
-    'ans6: "104,6°; \\"x\\" ans7: 3 [score]; ans8: 2" [score]; ans7: "L\'angle [1] & <b>" [score]; ans8: "1" [score]; '
+    'Seed: 1; ans1: "b" [score]; ans2: 12,5 mm [invalid]; ans3: 1,2.3 [invalid]; ans4: 1 [score]; '
+    'ans5: "2" [score]; '
+    'ans6: "104,6°; \\"x\\" ans7: 3 [score]; ans8: 2" [score]; ans7: "L\'angle [1] & <b>" [score]; '
+    'ans8: "1" [score]; '
     "ans9: 2 [score]; prt1: # = 0 | prt1-1-F | prt1-2-F | ATLogic_True. | prt1-3-case b; prt2: !; prt3: !; "
     "prt4: # = 0 | prt4-1-F; prt9: # = 0 | prt9-1-F"
 )

@@ -224,7 +224,10 @@ def test_code_in_the_answers_cell_is_told_and_never_run(tmp_path, monkeypatch, c
 @pytest.mark.parametrize("comma", [",  # mm", ",", ""])
 def test_a_value_not_written_as_asked_costs_no_other_answer(tmp_path, monkeypatch, value, answer, comma):
     monkeypatch.chdir(tmp_path)
-    code = f'# Your answers.\r\nanswers = {{\n  "a": "é 1",  # deg\n  "rA": {value}{comma}\n  "b": 2,\n  "c": "3"}}\n'
+    code = (
+        f'# Your answers.\r\nanswers = {{\n  "a": "é 1",  # deg\n  "rA": {value}{comma}\n  "b": 2,\n  "c": '
+        f'"3"}}\n'
+    )
     if "\n" in value and not comma:
         return
     rows, rejected = read(tmp_path, "a.ipynb", notebook(code))
@@ -411,8 +414,13 @@ def test_no_mutation_with_a_hash_loses_an_answer(tmp_path, count):
 
 @pytest.mark.parametrize(
     ("line", "answer"),
-    [("Ann,x,1,rA,12,5", "12,5"), ("Ann,x,1,rA,12,5 ; 3,2", "12,5 ; 3,2"), ("Ann,x,1,rA,(1, 2, 3)", "(1, 2, 3)"), ("Ann,x,1,rA,12.5,", "12.5,")],
-)  # fmt: skip
+    [
+        ("Ann,x,1,rA,12,5", "12,5"),
+        ("Ann,x,1,rA,12,5 ; 3,2", "12,5 ; 3,2"),
+        ("Ann,x,1,rA,(1, 2, 3)", "(1, 2, 3)"),
+        ("Ann,x,1,rA,12.5,", "12.5,"),
+    ],
+)
 def test_a_comma_without_quotation_marks_belongs_to_the_answer_at_the_end_of_a_line(tmp_path, line, answer):
     rows, rejected = read(
         tmp_path, "a.csv", f"student,exercise,seed,part,answer\nBo,x,1,rA,3\n{line}\nCy,x,1,rA,4\n"

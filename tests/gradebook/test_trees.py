@@ -1,4 +1,5 @@
-"""Trees of submissions: the folder says who, where the notebook names nobody; the time is kept; nothing beside is an answer."""
+"""Trees of submissions: the folder says who, where the notebook names nobody; the time is kept; nothing
+beside is an answer."""
 
 from __future__ import annotations
 
@@ -67,7 +68,8 @@ def test_files_that_a_tree_keeps_beside_are_no_rows_and_the_time_is_kept(tmp_pat
 
 
 def test_of_an_exchange_the_last_submission_alone_counts(tmp_path):
-    """An earlier one is no rejected row, even if it cannot be read or answers more; of another assignment it stays."""
+    """An earlier one is no rejected row, even if it cannot be read or answers more; of another assignment it
+    stays."""
     for time, content in (
         ("09:00:00", notebook(rA="1", theta4="72")),
         ("11:00:00.5", notebook(rA="111.535")),

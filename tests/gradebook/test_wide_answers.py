@@ -1,4 +1,5 @@
-"""Answers typed from paper, a line for each student; and the columns of the roster that come back with the marks."""
+"""Answers typed from paper, a line for each student; and the columns of the roster that come back with the
+marks."""
 
 import csv
 import re
@@ -12,7 +13,10 @@ from coursework.gradebook.submissions import read_file
 from coursework.issuing.issuing import Issue
 from coursework.issuing.wide_form import wide_form
 
-ROSTER = "student,number,group,date de naissance,extra_time\nAda,101,A,2005-01-02,yes\nBo,102,B,2005-03-04,\nCy,103,B,2005-05-06,\n"
+ROSTER = (
+    "student,number,group,date de naissance,extra_time\nAda,101,A,2005-01-02,yes\nBo,102,B,2005-03-04,\n"
+    "Cy,103,B,2005-05-06,\n"
+)
 
 
 @pytest.fixture
@@ -20,7 +24,8 @@ def built(small_course, tmp_path):
     (tmp_path / "class.csv").write_text(ROSTER)
     (tmp_path / "exam.toml").write_text(
         'roster = "class.csv"\nidentity = ["number"]\nmark = { of = 20, step = 0.5 }\n'
-        f'formats = "ipynb"\nsolutions = false\nsecret = "{"0123456789abcdef" * 2}"\n[[exercises]]\nname = "crank_pin"\n'
+        f'formats = "ipynb"\nsolutions = false\nsecret = "{"0123456789abcdef" * 2}"\n[[exercises]]\n'
+        'name = "crank_pin"\n'
     )
     out = tmp_path / "exam"
     assert run(["--course", str(small_course), "build", str(tmp_path / "exam.toml"), "--out", str(out)]) == 0
@@ -55,8 +60,10 @@ def test_the_form_of_a_line_for_each_student_is_filled_and_marked(built):
     assert grade(course, out, typed) == 1
     summary = table(out / "marks" / "summary.csv")
     assert [(s["student"], s["correct"], s["unreadable"], s["missing"]) for s in summary] == [
-        ("Ada", "3", "0", "0"), ("Bo", "1", "1", "1"), ("Cy", "0", "0", "3"),
-    ]  # fmt: skip
+        ("Ada", "3", "0", "0"),
+        ("Bo", "1", "1", "1"),
+        ("Cy", "0", "0", "3"),
+    ]
     rejected = [
         (r["student"], r["source"].rpartition("typed.csv, ")[2], r["reason"])
         for r in table(out / "marks" / "rejected.csv")
@@ -81,7 +88,8 @@ def test_rows_of_one_misspelt_name_are_one_line_with_their_number(built, capsys,
 
 
 def test_a_title_has_every_number_of_its_question_and_what_a_paper_does_not_ask_is_dashed(tmp_path):
-    """Papers that ask a choice or an angle in the same place, and another number of questions before the last ones."""
+    """Papers that ask a choice or an angle in the same place, and another number of questions before the last
+    ones."""
     course = coursework.open_course()
     exercise = course["slotted_mechanism"]
     variants = {f"S{seed}": exercise.variant(seed, "en") for seed in range(12)}

@@ -25,10 +25,26 @@ THIRD, HALF, NONE = Fraction(1, 3), Fraction(1, 2), Fraction(0)
 
 def test_extra_time_is_read_as_schools_write_it():
     cells = {
-        "": NONE, "no": NONE, "Non": NONE, "0": NONE, "x": THIRD, "Oui": THIRD, "YES": THIRD, "1": THIRD, "1/3": THIRD, "33 %": THIRD,
-        "33,33%": THIRD, "0,33": THIRD, "Un tiers": THIRD, "Tiers-temps": THIRD, "+1/3": THIRD, "1/2": HALF, "50 %": HALF,
-        "0.5": HALF, "25%": Fraction(1, 4),
-    }  # fmt: skip
+        "": NONE,
+        "no": NONE,
+        "Non": NONE,
+        "0": NONE,
+        "x": THIRD,
+        "Oui": THIRD,
+        "YES": THIRD,
+        "1": THIRD,
+        "1/3": THIRD,
+        "33 %": THIRD,
+        "33,33%": THIRD,
+        "0,33": THIRD,
+        "Un tiers": THIRD,
+        "Tiers-temps": THIRD,
+        "+1/3": THIRD,
+        "1/2": HALF,
+        "50 %": HALF,
+        "0.5": HALF,
+        "25%": Fraction(1, 4),
+    }
     assert {text: extra_time_of({"Tiers temps": text}) for text in cells} == cells
 
 
@@ -51,8 +67,20 @@ def test_columns_are_found_by_their_titles_in_both_languages():
 
 
 def test_a_duration_is_lengthened_in_whole_minutes():
-    durations = {"1 h 30": 90, "1h30": 90, "1 H 30 min": 90, "90 min": 90, "90 minutes": 90, "2 h": 120, "2 heures": 120,
-                 "1 hour 30 minutes": 90, "1 heure et 30 minutes": 90, "two hours": None, "": None, "90": None}  # fmt: skip
+    durations = {
+        "1 h 30": 90,
+        "1h30": 90,
+        "1 H 30 min": 90,
+        "90 min": 90,
+        "90 minutes": 90,
+        "2 h": 120,
+        "2 heures": 120,
+        "1 hour 30 minutes": 90,
+        "1 heure et 30 minutes": 90,
+        "two hours": None,
+        "": None,
+        "90": None,
+    }
     assert {text: minutes_of(text) for text in durations} == durations
     lengthened = [duration_text(with_extra(minutes, THIRD)) for minutes in (90, 45, 50, 95)]
     assert lengthened == ["2 h", "1 h", "1 h 07", "2 h 07"]

@@ -1,4 +1,5 @@
-"""What an exam needs on paper: codes in place of names, room, seat, own time, lists to sign, and room for the reasoning."""
+"""What an exam needs on paper: codes in place of names, room, seat, own time, lists to sign, and room for the
+reasoning."""
 
 import json
 

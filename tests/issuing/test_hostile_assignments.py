@@ -63,7 +63,10 @@ def test_so_is_a_value_in_an_exercise(course, key, value):
     ],
 )
 def test_a_logo_runs_nothing_and_holds_no_other_file(planted):
-    svg = f'<svg xmlns="http://www.w3.org/2000/svg" width="10" height="5" viewBox="0 0 10 5"><rect width="9" height="4"/>{planted}</svg>'
+    svg = (
+        '<svg xmlns="http://www.w3.org/2000/svg" width="10" height="5" viewBox="0 0 10 5"><rect width="9" '
+        f'height="4"/>{planted}</svg>'
+    )
     with pytest.raises(BadInput, match=r"^the logo: .*runs nothing and fetches nothing"):
         logo_svg(Logo(svg.encode(), "svg", "x"))
     assert logo_svg(Logo(svg.replace(planted, "").encode(), "svg", "x"))

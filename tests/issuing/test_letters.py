@@ -19,7 +19,11 @@ from coursework.rendering.pdf import compile_pdf
 from coursework.rendering.renderer import builtin_renderer
 
 DOCUMENT = '#set document(title: "t", date: auto)\n#set text(lang: "fr", font: "Libertinus Serif")\n'
-PRINTED = [chr(c) for c in (*range(0x20, 0x3000), *range(0x1D400, 0x1D500)) if drawable(chr(c)) == chr(c) and unicodedata.category(chr(c)) != "Cn"]  # fmt: skip
+PRINTED = [
+    chr(c)
+    for c in (*range(0x20, 0x3000), *range(0x1D400, 0x1D500))
+    if drawable(chr(c)) == chr(c) and unicodedata.category(chr(c)) != "Cn"
+]
 
 
 def printed(text):

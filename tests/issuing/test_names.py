@@ -1,4 +1,5 @@
-"""Names of students as people type them: accents and case may be wrong, and nobody is taken for a namesake."""
+"""Names of students as people type them: accents and case may be wrong, and nobody is taken for a
+namesake."""
 
 from tables import each_row
 

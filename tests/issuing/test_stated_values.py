@@ -1,4 +1,5 @@
-"""Values that an instructor states instead of drawing them: those of a textbook, or some of them, with the rest drawn."""
+"""Values that an instructor states instead of drawing them: those of a textbook, or some of them, with the
+rest drawn."""
 
 import math
 from collections import Counter

@@ -1,4 +1,5 @@
-"""Joint graphs as answers: read as people write them, judged joint by joint, and up to names where bodies have none."""
+"""Joint graphs as answers: read as people write them, judged joint by joint, and up to names where bodies
+have none."""
 
 from __future__ import annotations
 
@@ -42,11 +43,15 @@ def read(answer, *, named=True, reference=GRAPH):
         "R12 R23 R345 R14 R56 P16",
         "12 R, 23 R, 345 R, 14R, 56R, 16 P",
         "L12 pivot, L23 pivot, L345 pivot, L14 pivot, L56 pivot, L16 glissière",
-        "L1/2 = pivot d'axe (O,z), L2/3 = pivot d'axe (A,z), L3/4/5 pivot, L1/4 pivot, L5/6 pivot, L1/6 = glissière d'axe x",
+        "L1/2 = pivot d'axe (O,z), L2/3 = pivot d'axe (A,z), L3/4/5 pivot, L1/4 pivot, L5/6 pivot, "
+        "L1/6 = glissière d'axe x",
         "S1-S2 pivot, S2–S3 pivot, S3-S4 pivot S3-S5 pivot S1-S4 pivot S5-S6 pivot S1-S6 prismatic",
-        "S_1/S_2 : pivot en O\nS_2/S_3 : pivot en A\nS_{3}/S_{4}/S_{5} : pivot en B\nS₁/S₄ : pivot en D\n S5/S6 : pivot C\n①/⑥ : glissière",
-        "pivot entre 1 et 2, pivot entre 2 et 3, pivot commun à 3, 4 et 5, pivot entre 1 et 4, pivot entre 5 et 6, glissière entre 1 et 6",
-        "liaison pivot 1/2\nliaison pivot 2/3\nliaison pivot 3/4\nliaison pivot 4/5\nliaison pivot 1/4\nliaison pivot 5/6\nliaison glissière 1/6",
+        "S_1/S_2 : pivot en O\nS_2/S_3 : pivot en A\nS_{3}/S_{4}/S_{5} : pivot en B\nS₁/S₄ : pivot en "
+        "D\n S5/S6 : pivot C\n①/⑥ : glissière",
+        "pivot entre 1 et 2, pivot entre 2 et 3, pivot commun à 3, 4 et 5, pivot entre 1 et 4, pivot "
+        "entre 5 et 6, glissière entre 1 et 6",
+        "liaison pivot 1/2\nliaison pivot 2/3\nliaison pivot 3/4\nliaison pivot 4/5\nliaison pivot "
+        "1/4\nliaison pivot 5/6\nliaison glissière 1/6",
         "1 2 pivot, 2 3 pivot, 3 4 5 pivot, 1 4 pivot, 5 6 pivot, 1 6 slide",
         "1 -R- 2 -R- 3 -R- 4 -R- 1, 3 -R- 5 -R- 6 -P- 1",
         "1 pivot 2, 2 pivot 3, 3-4-5 pivot, 1 pivot 4, 5 pivot 6, 1 glissière 6",
@@ -54,7 +59,8 @@ def read(answer, *, named=True, reference=GRAPH):
         "0-2 pivot, 2-3 pivot, 3-4-5 pivot, 0-4 pivot, 5-6 pivot, 0-6 glissière",
         "(1,2) R, (2,3) R, (3,4,5) R, (1,4) R, (5,6) R, (1,6) P",
         "[(1, 2, 'R'), (2, 3, 'R'), (3, 4, 'R'), (3, 5, 'R'), (1, 4, 'R'), (5, 6, 'R'), (1, 6, 'P')]",
-        "| joint | \n| 1-2 | pivot |\n| 2-3 | pivot |\n| 3-4-5 | pivot |\n| 1-4 | pivot |\n| 5-6 | pivot |\n| 1-6 | glissiere |",
+        "| joint | \n| 1-2 | pivot |\n| 2-3 | pivot |\n| 3-4-5 | pivot |\n| 1-4 | pivot |\n| 5-6 | "
+        "pivot |\n| 1-6 | glissiere |",
         "1) 1-2 pivot\n2) 2-3 pivot\n3) 3-4-5 pivot\n4) 1-4 pivot\n5) 5-6 pivot\n6) 1-6 slide",
         "L1: 1-2 pivot; L2: 2-3 pivot; L3: 3-4-5 pivot; L4: 1-4 pivot; L5: 5-6 pivot; L6: 1-6 slide",
         "A: 2-3 pivot; B: 3-4-5 pivot; O: 1-2 pivot; D: 1-4 pivot; P: 5-6 pivot; P: 1-6 slide",
@@ -63,11 +69,20 @@ def read(answer, *, named=True, reference=GRAPH):
         "1↔2 pivto, 2->3 pivot, 3↔4↔5 pivot, 1↔4 pivot, 5<->6 pivot, 1--6 glissiére",
         "1-2 hinge, 2-3 REVOLUTE JOINT, 3-4-5 pin joint, 1-4 Revolute, 5-6 rotoïde, 1-6 sliding",
         [[1, 2, "R"], [2, 3, "R"], [3, 4, 5, "R"], [1, 4, "R"], [5, 6, "R"], [1, 6, "P"]],
-        [((1, 2), "pivot"), ((2, 3), "pivot"), ((3, 4, 5), "pivot"), ((1, 4), "pivot"), ((5, 6), "pivot"), ((1, 6), "slide")],
-        JointGraph.of([{"between": list(map(int, joint.bodies)), "kind": joint.kind} for joint in GRAPH]).records(),
+        [
+            ((1, 2), "pivot"),
+            ((2, 3), "pivot"),
+            ((3, 4, 5), "pivot"),
+            ((1, 4), "pivot"),
+            ((5, 6), "pivot"),
+            ((1, 6), "slide"),
+        ],
+        JointGraph.of(
+            [{"between": list(map(int, joint.bodies)), "kind": joint.kind} for joint in GRAPH]
+        ).records(),
         "1-2 P, 2-3 P, 3-4-5 P, 1-4 P, 5-6 P, 1-6 G",
     ],
-)  # fmt: skip
+)
 def test_one_graph_in_the_ways_people_write_it(answer):
     reading = read(answer)
     assert reading.status == "read", reading
@@ -152,8 +167,11 @@ def test_any_contact_is_a_higher_pair_and_a_ball_touches_at_a_point():
 
 def test_two_joints_of_the_same_bodies_are_two():
     twice = "0-1 revolute, 0-3 point_contact, 0-3 point_contact, 1-3 point_contact"
-    for answer in ("0-1 pivot, 0-3 ponctuelle ×2, 1-3 ponctuelle", "0-1 R, 2 x 0-3 contact, 3/1 contact",
-                   "0-3 contact en A, 0-3 contact en B, 0-1 pivot, 1-3 contact en C"):  # fmt: skip
+    for answer in (
+        "0-1 pivot, 0-3 ponctuelle ×2, 1-3 ponctuelle",
+        "0-1 R, 2 x 0-3 contact, 3/1 contact",
+        "0-3 contact en A, 0-3 contact en B, 0-1 pivot, 1-3 contact en C",
+    ):
         (value,) = read(answer, reference=graph_of(twice)).values
         assert NAMED.distance(None, value, twice) == 0, answer
     (value,) = read("0-1 pivot, 0-3 contact, 1-3 contact", reference=graph_of(twice)).values
@@ -222,14 +240,21 @@ def test_the_search_of_names_agrees_with_trying_them_all():
     ("answer", "is_right"),
     [
         ("a-b pivot, b-c pivot, c-d-e pivot, a-d pivot, e-f pivot, a-f glissière", True),
-        ("frame-crank R, crank-rod R, rod-rocker-link R, frame-rocker R, link-piston R, frame-piston P", True),
-        ("bâti-manivelle R, manivelle-bielle R, bielle-balancier R, bielle-tige R, balancier-bâti R, tige-piston R, "
-         "piston-bâti P", True),
+        (
+            "frame-crank R, crank-rod R, rod-rocker-link R, frame-rocker R, link-piston R, frame-piston P",
+            True,
+        ),
+        (
+            "bâti-manivelle R, manivelle-bielle R, bielle-balancier R, bielle-tige R, balancier-bâti "
+            "R, tige-piston R, "
+            "piston-bâti P",
+            True,
+        ),
         ("0-1 R, 1-2 R, 2-3-4 R, 0-3 R, 4-5 R, 0-5 P", True),
         ("a-frame R, frame-c R, c-d-e R, a-d R, e-f R, a-f P", False),  # another body is the frame
         ("a-b R, b-c R, c-d R, d-e R, a-d R, e-f P, a-f R", False),
     ],
-)  # fmt: skip
+)
 def test_bodies_without_names_are_called_as_one_likes_but_for_the_frame(answer, is_right):
     (value,) = read(answer, named=False).values
     assert (UNNAMED.distance(None, value, REFERENCE) == 0) == is_right

@@ -1,4 +1,5 @@
-"""A kind of part is one file: a course brings an *interval*, and it is built, marked, studied and checked as any."""
+"""A kind of part is one file: a course brings an *interval*, and it is built, marked, studied and checked as
+any."""
 
 from __future__ import annotations
 
@@ -98,10 +99,15 @@ KNOWN = (({"r1": 100, "r2": 40}, {"reach": (60, 140)}),)
 '''
 
 STATEMENT = {
-    "fr": "# Deux manivelles\n\nDeux manivelles en série, $r_1$ et $r_2$.\n\n## reach\nÀ quelle distance peut être leur bout ?\n",
-    "en": "# Two cranks\n\nTwo cranks in a row, $r_1$ and $r_2$.\n\n## reach\nHow far away may their end be?\n",
+    "fr": "# Deux manivelles\n\nDeux manivelles en série, $r_1$ et $r_2$.\n\n## reach\nÀ quelle distance "
+    "peut être leur bout ?\n",
+    "en": "# Two cranks\n\nTwo cranks in a row, $r_1$ and $r_2$.\n\n## reach\nHow far away may their end "
+    "be?\n",
 }
-WORDS = {"fr": "# Deux manivelles\n\n## mistake from_nothing\nLe plus court.\n", "en": "# Two cranks\n\n## mistake from_nothing\nThe nearest.\n"}  # fmt: skip
+WORDS = {
+    "fr": "# Deux manivelles\n\n## mistake from_nothing\nLe plus court.\n",
+    "en": "# Two cranks\n\n## mistake from_nothing\nThe nearest.\n",
+}
 
 
 @pytest.fixture

@@ -1,4 +1,5 @@
-"""Complex numbers, vectors, matrices, several choices, texts and drawings: asked, built, handed in, marked, checked."""
+"""Complex numbers, vectors, matrices, several choices, texts and drawings: asked, built, handed in, marked,
+checked."""
 
 from __future__ import annotations
 
@@ -63,10 +64,25 @@ def write(path, rows):
         *[
             (right, "correct")
             for right in (
-                "30+40i", "30 + 40j", "30 + j40 Ω", "40i + 30", "Z = 30+40i ohm", "50∠53,13°", "50 Ω ∠ 53,13°",
-                "50∠53.13° Ω", "50 e^{i 53.13°}", "50 e^(0.9273 j)", "50e^(0.9273i)", "50*exp(i*0.9273)",
-                "(50 ; 53.13°)", "0,03 kΩ + 0,04i kΩ", "(0,03+0,04i) kΩ", "50∠0.9273 rad", r"50 \angle 53.13^\circ",
-                30 + 40j, "30+40.49i",
+                "30+40i",
+                "30 + 40j",
+                "30 + j40 Ω",
+                "40i + 30",
+                "Z = 30+40i ohm",
+                "50∠53,13°",
+                "50 Ω ∠ 53,13°",
+                "50∠53.13° Ω",
+                "50 e^{i 53.13°}",
+                "50 e^(0.9273 j)",
+                "50e^(0.9273i)",
+                "50*exp(i*0.9273)",
+                "(50 ; 53.13°)",
+                "0,03 kΩ + 0,04i kΩ",
+                "(0,03+0,04i) kΩ",
+                "50∠0.9273 rad",
+                r"50 \angle 53.13^\circ",
+                30 + 40j,
+                "30+40.49i",
             )
         ],
         ("30+40.6i", "wrong"),
@@ -79,7 +95,7 @@ def write(path, rows):
         ("1e400i", "unreadable"),
         ("", "missing"),
     ],
-)  # fmt: skip
+)
 def test_a_complex_number_is_read_as_people_write_it(variant, answer, verdict):
     assert variant.grade({"Z": answer})["Z"].verdict == verdict
 
@@ -101,9 +117,18 @@ def test_what_follows_from_a_wrong_complex_number_is_right(variant):
         *[
             (right, "correct")
             for right in (
-                "[60, 80, 100]", "(60 ; 80 ; 100) V", "60; 80; 100", "60 80 100", "60\n80\n100", [60, 80, 100],
-                [[60], [80], [100]], np.array([60.0, 80.0, 100.0]), "0,06 ; 0,08 ; 0,1 kV", "array([60., 80., 100.])",
-                r"\begin{pmatrix} 60 \\ 80 \\ 100 \end{pmatrix} V", "59 ; 80 ; 100",
+                "[60, 80, 100]",
+                "(60 ; 80 ; 100) V",
+                "60; 80; 100",
+                "60 80 100",
+                "60\n80\n100",
+                [60, 80, 100],
+                [[60], [80], [100]],
+                np.array([60.0, 80.0, 100.0]),
+                "0,06 ; 0,08 ; 0,1 kV",
+                "array([60., 80., 100.])",
+                r"\begin{pmatrix} 60 \\ 80 \\ 100 \end{pmatrix} V",
+                "59 ; 80 ; 100",
             )
         ],
         ("58.9 ; 80 ; 100", "wrong"),  # the half-width of each is 1 % of the largest
@@ -111,7 +136,7 @@ def test_what_follows_from_a_wrong_complex_number_is_right(variant):
         ("60 ; 80 ; 100 A", "wrong_unit"),
         ("80 ; 60 ; 100", "wrong"),
     ],
-)  # fmt: skip
+)
 def test_a_vector_is_judged_entry_by_entry(variant, answer, verdict):
     assert variant.grade({"drops": answer})["drops"].verdict == verdict
 
@@ -122,10 +147,18 @@ def test_a_vector_is_judged_entry_by_entry(variant, answer, verdict):
         *[
             (right, "correct")
             for right in (
-                "[[30, -40], [40, 30]]", "30 -40; 40 30", "30 -40\n40 30", "[30 -40; 40 30] ohm", [[30, -40], [40, 30]],
-                "30,0 -40,0; 40,0 30,4", "[30, -40]; [40, 30]", "((30 ; -40) ; (40 ; 30))",
-                "[[0.03 -0.04]\n [0.04 0.03]] kΩ", np.array([[30, -40], [40, 30]]),
-                r"$\begin{bmatrix}30&-40\\40&30\end{bmatrix}$", "M = np.array([[30, -40], [40, 30]])",
+                "[[30, -40], [40, 30]]",
+                "30 -40; 40 30",
+                "30 -40\n40 30",
+                "[30 -40; 40 30] ohm",
+                [[30, -40], [40, 30]],
+                "30,0 -40,0; 40,0 30,4",
+                "[30, -40]; [40, 30]",
+                "((30 ; -40) ; (40 ; 30))",
+                "[[0.03 -0.04]\n [0.04 0.03]] kΩ",
+                np.array([[30, -40], [40, 30]]),
+                r"$\begin{bmatrix}30&-40\\40&30\end{bmatrix}$",
+                "M = np.array([[30, -40], [40, 30]])",
             )
         ],
         ("30 -40; 40 30.5", "wrong"),
@@ -134,7 +167,7 @@ def test_a_vector_is_judged_entry_by_entry(variant, answer, verdict):
         ("1 2 3; 4 5 6", "unreadable"),
         ("[[30, -40], [40, 30]] V", "wrong_unit"),
     ],
-)  # fmt: skip
+)
 def test_a_matrix_is_judged_entry_by_entry(variant, answer, verdict):
     assert variant.grade({"M": answer})["M"].verdict == verdict
 
@@ -321,7 +354,8 @@ def test_points_for_another_answer_do_not_count_and_are_kept(marked, capsys):
 
 
 def test_the_files_of_a_folder_of_before_are_read_and_become_one(marked):
-    """Points of ``to_mark.csv`` and lines of ``accepted.csv`` count, and ``decisions.csv`` has the former from then on."""
+    """Points of ``to_mark.csv`` and lines of ``accepted.csv`` count, and ``decisions.csv`` has the former
+    from then on."""
     folder, grade = marked
     grade()
     marks = folder / "marks"

@@ -140,7 +140,8 @@ def test_strokes_of_a_row_are_those_of_its_mechanisms():
 
 @each_row("near", [1e-2, 1e-4, 1e-6, 1e-8])
 def test_two_turns_back_that_are_nearly_one_are_counted(near):
-    """The rod folds onto the rocker, in its direction turned by half, just before the rocker turns back, or never."""
+    """The rod folds onto the rocker, in its direction turned by half, just before the rocker turns back, or
+    never."""
     end = math.radians(60 + 180) - math.acos((80**2 + 60**2 - 120**2) / (2 * 80 * 60))
     reached = 80 * math.sin(math.radians(60)) - 40 * np.sin(end + near * np.array([-1, 1]))
     assert FOUR_TIMES._replace(line=reached).times_turned().tolist() == [2, 4]

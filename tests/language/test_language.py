@@ -45,11 +45,15 @@ def test_a_copy_of_the_english_words_is_a_language_with_a_byte_order_mark_too(sp
         ('data = "Given"\n', "", "lacks sheet.data"),
         ('data = "Given"', "data = 1", "sheet.data is to be like the English 'Given'; found 1"),
         ("To be predicted: {names}", "A predecir: {nombres}", "{nombres}"),
-        ("To be predicted: {names}", "A predecir: {nombres}", "study.which_predictions has {call}, {nombres} where"),
+        (
+            "To be predicted: {names}",
+            "A predecir: {nombres}",
+            "study.which_predictions has {call}, {nombres} where",
+        ),
         ("To be predicted: {names}", "A predecir:", "where the English text has {call}, {names}"),
         ("To be predicted: {names}", "A predecir: {names", "study.which_predictions"),
     ],
-)  # fmt: skip
+)
 def test_words_that_cannot_be_used_are_one_line_with_file_and_place(spanish, capsys, old, new, told):
     text = spanish.read_text("utf-8")
     assert old in text

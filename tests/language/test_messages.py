@@ -1,4 +1,5 @@
-"""Every message for instructors and students is a template that stands in the French catalogue with the same places."""
+"""Every message for instructors and students is a template that stands in the French catalogue with the same
+places."""
 
 import ast
 import pickle
@@ -30,7 +31,8 @@ from coursework.messages import (
     translations,
 )
 
-#: What takes a template first, and is read by those who use the product; errors in the code of a course stay English.
+#: What takes a template first, and is read by those who use the product; errors in the code of a course stay
+#: English.
 FOR_USERS = {
     "BadInput",
     "Message",
@@ -44,7 +46,8 @@ FOR_USERS = {
     "warn",
 }
 
-#: What the numeric core, mechanics, scenes and figures refuse: read by those who solve, simulate, explore and learn.
+#: What the numeric core, mechanics, scenes and figures refuse: read by those who solve, simulate, explore and
+#: learn.
 OF_NUMBERS = {
     "WrongValue",
     "WrongUnit",
@@ -94,7 +97,8 @@ def test_each_message_has_a_translation_with_the_same_places(lang):
 
     def fault(first, keywords):
         if not isinstance(first, ast.Constant):
-            # A message passed on whole, a variable, or a text of words in the reader's language: never one put together on the spot.
+            # A message passed on whole, a variable, or a text of words in the reader's language: never one
+            # put together on the spot.
             return (
                 None
                 if isinstance(first, ast.Name | ast.Call | ast.Attribute | ast.Subscript)
@@ -150,7 +154,8 @@ NOT_MESSAGES = {
 
 
 def sentences(file):
-    """Yield the English sentences in the code of a file that are neither documentation nor help of a command."""
+    """Yield the English sentences in the code of a file that are neither documentation nor help of a
+    command."""
     skipped = set()
     for node in all_nodes(file):
         if isinstance(node, ast.Expr) and isinstance(node.value, ast.Constant):

@@ -21,7 +21,8 @@ BANNED = {
         r"\blets be\b": "allows",
         r"\bsquare to\b|\bare square (there|to)\b": "perpendicular to",
         r"(?<!\*)\bhinge[ds]?\b": "revolute joint, pinned",
-        r"\b(two|three|four|six|seven|eight|eleven) (pivots(?!:)(?! \$)|slides)\b(?! (of|on|in|that)\b)": "revolute, prismatic joints",
+        r"\b(two|three|four|six|seven|eight|eleven) (pivots(?!:)(?! \$)"
+        r"|slides)\b(?! (of|on|in|that)\b)": "revolute, prismatic joints",
         r"\b(a|one) (pivot|slide) (and a|or a) (pivot|slide)\b": "a revolute and a prismatic joint",
         r"\bpivots and slides\b": "revolute and prismatic joints",
         r"\bmodes? of assembly\b": "assembly mode",
@@ -46,13 +47,16 @@ BANNED = {
         r"\b(un|du|le|au) quatre[- ]barres\b|\bmécanisme (à )?quatre barres\b(?!\*)": "quadrilatère articulé",
         r"\b(la|une|cette|sa)\s+coulisses?\b": "guide",
         r"\bprédi(sez|re)\b": "prévoyez, prévoir",
-        r"\bsystèmes? à (piston|coulisse)\b|\bmanivelles? à coulisse\b": "système bielle-manivelle, mécanisme à coulisse",
+        r"\bsystèmes? à (piston|coulisse)\b|\bmanivelles? à coulisse\b": "système bielle-manivelle, "
+        "mécanisme à coulisse",
         r"\b(manivelle et bielle|bielle) (sont )?étendues?\b": "dans le prolongement l'une de l'autre",
-        r"\bpoints? morts? (de la sortie|du balancier|extérieurs?|intérieurs?)\b": "position extrême, point mort haut ou bas",
+        r"\bpoints? morts? (de la sortie|du balancier|extérieurs?|intérieurs?)\b": "position extrême, point "
+        "mort haut ou bas",
         r"\btourne le dos\b": "est dirigée à l'opposé",
         r"\bdésaxage\b": "excentration",
         r"\bcompensation\b": "annulation catastrophique",
-        r"\b(de|à) combien pour cent\b|\bregarde(z|r|riez)(-vous)? deux fois\b": "de quel pourcentage, vous méfieriez-vous",
+        r"\b(de|à) combien pour cent\b|\bregarde(z|r|riez)(-vous)? deux fois\b": "de quel pourcentage, vous "
+        "méfieriez-vous",
         r"\bétau limeur\b|\bà quel des\b|\bmécanismes aux\b": "étau-limeur, auquel des, mécanismes à",
         r"\bhoeken\b": "Hoecken",
         r"(?<!système )(?<!systèmes )\bbielle-manivelle\b(?!, système)": "système bielle-manivelle",
@@ -87,7 +91,8 @@ def test_no_text_names_a_thing_by_a_second_name():
 
 
 def readable(file: Path) -> str:
-    """The prose of a file: no code, no heading that is a name of the code, no list of spellings that are read."""
+    """The prose of a file: no code, no heading that is a name of the code, no list of spellings that are
+    read."""
     text = FENCE.sub("", file.read_text("utf-8"))
     text = re.sub(r"^## (\w+|mistake \w+)$", "", text, flags=re.MULTILINE)
     text = re.sub(r"^\w+ = \[.*?\]", "", text, flags=re.MULTILINE | re.DOTALL)
@@ -95,7 +100,8 @@ def readable(file: Path) -> str:
 
 
 def sentences(value: object, lang: str) -> Iterator[str]:
-    """Every text of a table of the book in a language; a pair is a word that leads to another, and may be banned."""
+    """Every text of a table of the book in a language; a pair is a word that leads to another, and may be
+    banned."""
     if isinstance(value, dict):
         for key, inner in value.items():
             if key == lang and isinstance(inner, str):

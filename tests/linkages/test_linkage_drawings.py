@@ -44,7 +44,8 @@ def test_a_right_drawing_gets_full_marks_from_any_pole_and_scale(name, count):
     assert {n: marks[n].points / marks[n].out_of for n in drawn} == dict.fromkeys(drawn, 1.0)
 
 
-#: Mechanisms by what drives or guides in them: a jack, a slider, a yoke, two crossed guides, wheels, a guide that moves.
+#: Mechanisms by what drives or guides in them: a jack, a slider, a yoke, two crossed guides, wheels, a guide
+#: that moves.
 DRAWN = ("tipper", "piston_engine", "scotch_yoke", "crossed_slides", "geared_five_bar", "whitworth_on_a_rod")
 ON_A_ROD = """
 5 = { at = "Q", points = { D = "120 mm" } }
@@ -55,7 +56,8 @@ D = { of = "6", on = "3", through = "A", along = "20 deg", distance = "s" }
 
 
 def _stated(name):
-    """Return a mechanism's file that asks for both polygons; the last one is a four-bar whose rod guides a slider."""
+    """Return a mechanism's file that asks for both polygons; the last one is a four-bar whose rod guides a
+    slider."""
     if name != DRAWN[-1]:
         text = (LINKAGES / "exercises" / f"{name}.toml").read_text("utf-8")
     else:
@@ -150,7 +152,8 @@ def test_no_two_vectors_of_a_polygon_have_one_name_and_relative_ones_name_both_p
             names = [side.name for side in polygon.sides]
             if len(names) > len(set(names)):
                 wrong[name, kind] = names
-            # A chain of one body's vectors that begins at another image than the pole is of a motion relative to that point.
+            # A chain of one body's vectors that begins at another image than the pole is of a motion relative
+            # to that point.
             starts = {side.end: side for side in polygon.sides if "'" in side.end}
             bare = [
                 side.name
@@ -170,7 +173,8 @@ def _foreign_lines(course, name):
 
 
 def test_files_of_one_name_in_two_courses_print_their_own_formulas(tmp_path):
-    """Formulas are printed from the lines of functions, which a file of the same name elsewhere must not replace."""
+    """Formulas are printed from the lines of functions, which a file of the same name elsewhere must not
+    replace."""
     shutil.copytree(LINKAGES, tmp_path / "other")
     exercises = tmp_path / "other" / "exercises"
     shutil.copy(exercises / "slider_crank.toml", exercises / "four_bar.toml")

@@ -1,4 +1,5 @@
-"""Expressions of a mechanism's file know units: a length is one, however it is written, and a plain number is none."""
+"""Expressions of a mechanism's file know units: a length is one, however it is written, and a plain number is
+none."""
 
 import numpy as np
 import pytest
@@ -46,23 +47,68 @@ def test_right_expressions_have_values_in_their_units(text, unit, value):
 @each_row(
     "text, unit, found, in_french",
     [
-        ("r2 + 5", "mm", "r2 is in mm, 5 without unit: they do not add up", "r2 est en mm, 5 sans unité : ils ne s’ajoutent pas"),
+        (
+            "r2 + 5",
+            "mm",
+            "r2 is in mm, 5 without unit: they do not add up",
+            "r2 est en mm, 5 sans unité : ils ne s’ajoutent pas",
+        ),
         ("r2 + k", "mm", "r2 is in mm, k without unit: they do not add up", "k sans unité"),
-        ("k*100", "mm", "'k*100' is without unit, where a value in mm stands", "'k*100' est sans unité, là où il faut une valeur en mm"),
+        (
+            "k*100",
+            "mm",
+            "'k*100' is without unit, where a value in mm stands",
+            "'k*100' est sans unité, là où il faut une valeur en mm",
+        ),
         ("k*10", "deg", "'k*10' is without unit, where a value in deg stands", "une valeur en deg"),
-        ("theta2 + 5", "deg", "theta2 is in deg, 5 without unit: they do not add up", "theta2 est en deg, 5 sans unité"),
+        (
+            "theta2 + 5",
+            "deg",
+            "theta2 is in deg, 5 without unit: they do not add up",
+            "theta2 est en deg, 5 sans unité",
+        ),
         ("r2 * r3", "mm", "'r2 * r3' is in mm^2, where a value in mm stands", "est en mm^2"),
         ("k*5 kg", "mm", "'k*5 kg' is in kg, where a value in mm stands", "est en kg"),
         ("sqrt(r2^2 + 4)", "mm", "r2 ^ 2 is in mm^2, 4 without unit", "r2 ^ 2 est en mm^2, 4 sans unité"),
-        ("sqrt(r2)", "mm", "the root of r2, which is in mm, has no unit", "la racine de r2, qui est en mm, n’a pas d’unité"),
-        ("min(3, r2)", "mm", "3 is without unit, r2 in mm: they cannot be compared", "on ne peut les comparer"),
-        ("sin(30)", "1", "sin takes a value in deg, such as sin(30 deg); 30 is without unit", "sin prend une valeur en deg, comme sin(30 deg) ; 30 est sans unité"),
-        ("acos(r2)", "deg", "acos takes a value without unit, such as acos(r2 / r3); r2 is in mm", "acos prend une valeur sans unité"),
-        ("2 r2", "mm", "a product has its sign: '2 * r2'; found '2 r2'", "un produit s’écrit avec son signe : '2 * r2'"),
+        (
+            "sqrt(r2)",
+            "mm",
+            "the root of r2, which is in mm, has no unit",
+            "la racine de r2, qui est en mm, n’a pas d’unité",
+        ),
+        (
+            "min(3, r2)",
+            "mm",
+            "3 is without unit, r2 in mm: they cannot be compared",
+            "on ne peut les comparer",
+        ),
+        (
+            "sin(30)",
+            "1",
+            "sin takes a value in deg, such as sin(30 deg); 30 is without unit",
+            "sin prend une valeur en deg, comme sin(30 deg) ; 30 est sans unité",
+        ),
+        (
+            "acos(r2)",
+            "deg",
+            "acos takes a value without unit, such as acos(r2 / r3); r2 is in mm",
+            "acos prend une valeur sans unité",
+        ),
+        (
+            "2 r2",
+            "mm",
+            "a product has its sign: '2 * r2'; found '2 r2'",
+            "un produit s’écrit avec son signe : '2 * r2'",
+        ),
         ("5*mm", "mm", "'mm' is a unit, which stands beside a number: \"5 mm\"", "'mm' est une unité"),
-        ("100 mmm", "mm", "no unit 'mmm'; did you mean 'mm'?", "aucune unité « mmm » ; vouliez-vous dire « mm » ?"),
+        (
+            "100 mmm",
+            "mm",
+            "no unit 'mmm'; did you mean 'mm'?",
+            "aucune unité « mmm » ; vouliez-vous dire « mm » ?",
+        ),
     ],
-)  # fmt: skip
+)
 def test_wrong_expressions_are_refused_in_both_languages(text, unit, found, in_french):
     with pytest.raises(CourseworkError) as fault:
         ExpressionReader(UNITS).read(text, unit)

@@ -15,7 +15,8 @@ from coursework.messages import localised
 
 TOGGLE = (FOLDER / "exercises" / "toggle.toml").read_text("utf-8")
 
-#: What is changed in a right file: the text, what replaces it, the line that is named, a piece of the message.
+#: What is changed in a right file: the text, what replaces it, the line that is named, a piece of the
+#: message.
 FAULTS = [
     (
         "[given]",
@@ -62,7 +63,8 @@ FAULTS = [
     ('3 = { points = { A = "0 mm", B = "r3" } }', "", 19, "hangs on C alone"),
     (
         '4 = { at = "C", points = { B = "r4" } }',
-        '4 = { at = "C", points = { B = "r4", E = "r3" } }\n5 = { at = "O", points = { B = "r1", E = "r2" } }',
+        '4 = { at = "C", points = { B = "r4", E = "r3" } }\n5 = { at = "O", points = { B = "r1", E = '
+        '"r2" } }',
         16,
         "degrees of freedom",
     ),
@@ -146,20 +148,38 @@ LENGTHS = [
     ("tipper", 'from = "C"', 'from = "D"', 16, "no point 'D'"),
     ("tipper", 'length = "L" }', 'length = "L", limits = ["440 mm"] }', 16, 'limits = ["300 mm", "500 mm"]'),
     ("tipper", 'length = "L" }', 'legnth = "L" }', 16, "a jack is 2 ="),
-    ("tipper", "[assembly]", '5 = { from = "O", to = "G", rod = "6", length = "a" }\n[assembly]', 17, "two bodies are driven, 2 and 5"),
-    ("tipper", "thrust = {", "torque = {", 27, "of a driven length ask thrust") ,
+    (
+        "tipper",
+        "[assembly]",
+        '5 = { from = "O", to = "G", rod = "6", length = "a" }\n[assembly]',
+        17,
+        "two bodies are driven, 2 and 5",
+    ),
+    ("tipper", "thrust = {", "torque = {", 27, "of a driven length ask thrust"),
     ("tipper", "L_dot = {", "L_speed = {", 23, 'L_dot = "12 mm/s"'),
     ("digger_arm", "thrust =", 'polygon = ["velocity"]\nthrust =', 23, "one group of class III"),
     ("piston_engine", "mobility = true", 'advantage = "4"', 21, "on the ground: 3, 2; found '4'"),
-    ("piston_engine", 'on = "ground", through = ["0 mm", "e"]', 'on = "2", through = ["0 mm", "e"]', 17, "distance along the slide, which follows"),
+    (
+        "piston_engine",
+        'on = "ground", through = ["0 mm", "e"]',
+        'on = "2", through = ["0 mm", "e"]',
+        17,
+        "distance along the slide, which follows",
+    ),
     ("klann_leg", 'EF = "57.7 mm"', 'EF = "1 mm"', 17, "EG, EF, FG has no value"),
     ("slider_crank", 'equations = ["x", "y", "complex"]', "equations = [{}]", 21, "a list of x, y, complex"),
     ("digger_arm", 'near = { length = "346 mm"', 'near = { angle = "20 deg"', 16, "length ="),
-    ("digger_arm", 'B = ["100 mm", "490 mm"]', 'Z = ["1 mm", "1 mm"], B = ["100 mm", "490 mm"]', 16, "no point 'Z'"),
-    ("digger_arm", 'near = {', 'far = {', 16, "a way to assemble"),
+    (
+        "digger_arm",
+        'B = ["100 mm", "490 mm"]',
+        'Z = ["1 mm", "1 mm"], B = ["100 mm", "490 mm"]',
+        16,
+        "no point 'Z'",
+    ),
+    ("digger_arm", "near = {", "far = {", 16, "a way to assemble"),
     ("piston_engine", 'on = "ground", through', 'on = "3", through', 17, "a point of body 3 itself"),
     ("geared_five_bar", 'radii = ["R2", "R5"]', 'radii = ["R2"]', 20, "a gear is G ="),
-]  # fmt: skip
+]
 
 
 @each_row("name, text, other, line, piece", [("toggle", *row) for row in FAULTS] + LENGTHS)
@@ -239,7 +259,8 @@ def test_a_file_that_is_not_utf8_is_told_in_a_line(tmp_path):
     ],
 )
 def test_a_polygon_with_nothing_to_draw_is_refused_when_the_file_is_read(tmp_path, theta2, refused):
-    """A parallelogram's coupler never turns; where the crank goes round, that of the antiparallelogram does."""
+    """A parallelogram's coupler never turns; where the crank goes round, that of the antiparallelogram
+    does."""
     path = tmp_path / "parallelogram.toml"
     text = re.sub(r"theta2 = \{.*", f"theta2 = {theta2}", TOGGLE).replace(
         ', "transmission_angle(B) > 25 deg"', ""

@@ -1,4 +1,5 @@
-"""Torques, thrusts and advantages of mechanisms stated as files, against Lagrange's multipliers of their joints."""
+"""Torques, thrusts and advantages of mechanisms stated as files, against Lagrange's multipliers of their
+joints."""
 
 import re
 
@@ -16,7 +17,8 @@ QUICK = ("slider_crank", "scotch_yoke", "tipper", "crossed_slides")
 
 
 def loaded(name, folder):
-    """The file of a mechanism, with a moment on a body and forces at two points; what acts, and the exercise."""
+    """The file of a mechanism, with a moment on a body and forces at two points; what acts, and the
+    exercise."""
     text = (FOLDER / "exercises" / f"{name}.toml").read_text("utf-8")
     linkage = compiled(FOLDER / "exercises" / f"{name}.toml").linkage
     turning = [

@@ -1,6 +1,8 @@
-"""Pairs of bodies held in every way: their positions, rates and accelerations meet the joints, placed by the frame of each body.
+"""Pairs of bodies held in every way: their positions, rates and accelerations meet the joints, placed by the
+frame of each body.
 
-One body hangs on a crank, the other on a rocker, with every joint a pin, or a slide on either of its bodies, whose line is off all frames.
+One body hangs on a crank, the other on a rocker, with every joint a pin, or a slide on either of its bodies,
+whose line is off all frames.
 """
 
 from itertools import product
@@ -37,11 +39,15 @@ WAYS = [  # pins, slides of the body on another, or of another on it; three slid
 
 def a_slide(point, of, on, along, through, distance):
     place = ", ".join(f'"{x} mm"' for x in through)
-    return f'{point} = {{ of = "{of}", on = "{on}", through = [{place}], along = "{along} deg", distance = "{distance}" }}'
+    return (
+        f'{point} = {{ of = "{of}", on = "{on}", through = [{place}], along = "{along} deg", distance = '
+        f'"{distance}" }}'
+    )
 
 
 def file_of(first, inner, last, names):
-    """The file of a pair: how the crank holds one, how one holds the other, how the rocker holds this; and what the two are called."""
+    """The file of a pair: how the crank holds one, how one holds the other, how the rocker holds this; and
+    what the two are called."""
     p, q = names
     points, slides = {p: {}, q: {}}, []
     for body, held, holder, pin, block, line, place, along in (

@@ -1,4 +1,5 @@
-"""Mechanisms stated as files move as their joints say: against differences, virtual work, and the hand-written solutions."""
+"""Mechanisms stated as files move as their joints say: against differences, virtual work, and the
+hand-written solutions."""
 
 import re
 
@@ -41,7 +42,8 @@ def _rate(name, order):
 @each_row("name", NAMES)
 @pytest.mark.e2e
 def test_rates_and_accelerations_are_the_differences_of_positions(name):
-    """Of seven points of a polynomial through positions a third of a degree apart, with the driver at a constant rate."""
+    """Of seven points of a polynomial through positions a third of a degree apart, with the driver at a
+    constant rate."""
     exercise = course()[name]
     given = dict(exercise.variant(3).given)
     driver = exercise.spec.driver
@@ -77,7 +79,8 @@ def test_rates_and_accelerations_are_the_differences_of_positions(name):
 
 @each_row("name", [n for n in NAMES if n in ("toggle", "slider_crank", "atkinson_engine")])
 def test_torques_do_the_work_of_the_load(name):
-    """A small turn of the driver: its torque times the angle, and the load times the way of its point or body, add up to nothing."""
+    """A small turn of the driver: its torque times the angle, and the load times the way of its point or
+    body, add up to nothing."""
     exercise = course()[name]
     given = dict(exercise.variant(5).given)
     step = 0.02
@@ -95,7 +98,8 @@ def test_torques_do_the_work_of_the_load(name):
 
 @each_row("name", ["tipper", "piston_engine", "digger_arm"])
 def test_driven_lengths_push_what_the_scene_says_and_does_the_work_of_the_load(name):
-    """The thrust by the powers is that by the forces of the joints, which know nothing of it; a small way of the driver does work."""
+    """The thrust by the powers is that by the forces of the joints, which know nothing of it; a small way of
+    the driver does work."""
     exercise = course()[name]
     given, driver = dict(exercise.variant(1).given), exercise.spec.driver
     thrust = exercise.solve(only="thrust", **given)["thrust"]
@@ -144,25 +148,49 @@ def _both(name, other, arguments, answers, renamed=None, count=300):
     "name, other, arguments, answers, renamed",
     [
         (
-            "four_bar", "four_bar_motion", ("r1", "r2", "r3", "r4", "theta2", "omega2", "alpha2"),
-            {n: n for n in ("theta3", "theta4", "omega3", "omega4", "alpha3", "alpha4")}, {"mode": "mode_B"},
+            "four_bar",
+            "four_bar_motion",
+            ("r1", "r2", "r3", "r4", "theta2", "omega2", "alpha2"),
+            {n: n for n in ("theta3", "theta4", "omega3", "omega4", "alpha3", "alpha4")},
+            {"mode": "mode_B"},
         ),
         (
-            "slider_crank", "slider_crank", ("r2", "r3", "e", "theta2", "omega2", "alpha2"),
-            {"theta3": "theta3", "x": "r1", "omega3": "omega3", "x_dot": "r1_dot", "alpha3": "alpha3", "x_ddot": "r1_ddot"}, {},
+            "slider_crank",
+            "slider_crank",
+            ("r2", "r3", "e", "theta2", "omega2", "alpha2"),
+            {
+                "theta3": "theta3",
+                "x": "r1",
+                "omega3": "omega3",
+                "x_dot": "r1_dot",
+                "alpha3": "alpha3",
+                "x_ddot": "r1_ddot",
+            },
+            {},
         ),
         (
-            "slotted_lever", "slotted_mechanism", ("r1", "r2", "theta2", "omega2", "alpha2"),
-            {"theta4": "theta4", "r4": "rA", "omega4": "omega4", "r4_dot": "rA_dot", "alpha4": "alpha4", "r4_ddot": "rA_ddot"}, {},
+            "slotted_lever",
+            "slotted_mechanism",
+            ("r1", "r2", "theta2", "omega2", "alpha2"),
+            {
+                "theta4": "theta4",
+                "r4": "rA",
+                "omega4": "omega4",
+                "r4_dot": "rA_dot",
+                "alpha4": "alpha4",
+                "r4_ddot": "rA_ddot",
+            },
+            {},
         ),
         (
-            "two_loops", "two_loop_linkage",
+            "two_loops",
+            "two_loop_linkage",
             ("xC", "yC", "xF", "yF", "r2", "r3", "r4", "r5", "beta", "r6", "r7", "theta2", "omega2"),
             {f"{s}{k}": f"{s}{k}" for s in ("theta", "omega", "alpha") for k in (3, 4, 6, 7)},
             {"mode_1": "mode_B", "mode_2": "mode_E"},
         ),
     ],
-)  # fmt: skip
+)
 def test_files_agree_with_the_solutions_written_by_hand(name, other, arguments, answers, renamed):
     for mine, right, answer in _both(name, other, arguments, answers, renamed):
         apart = np.asarray(mine) - right
@@ -194,7 +222,8 @@ def test_bars_on_a_body_that_slides_alone_hold_agree_with_its_rates(tmp_path):
     text = (FOLDER / "exercises" / "crossed_slides.toml").read_text("utf-8")
     text = text.replace(
         "[slides]",
-        '5 = { points = { K = "0 mm", E = "200 mm" } }\n6 = { at = "C", points = { E = "150 mm" } }\n[slides]',
+        '5 = { points = { K = "0 mm", E = "200 mm" } }\n6 = { at = "C", points = { E = "150 mm" } }\n'
+        "[slides]",
     )
     text = text.replace("[bodies]", 'C = ["330 mm", "40 mm"]\n[bodies]').replace(
         "[ask]", '[assembly]\nE = "left of K -> C"\n[ask]\nequations = true'

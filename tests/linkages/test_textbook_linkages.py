@@ -1,7 +1,9 @@
-"""Linkages of textbooks that do not come with the package, from the text of a file to marks, motion and efforts.
+"""Linkages of textbooks that do not come with the package, from the text of a file to marks, motion and
+efforts.
 
-Positions, rates, accelerations and efforts are compared with the joints alone, closed by Newton's method, and with what the books
-print: R. L. Norton, *Design of Machinery*, tables P4-1 to P4-3, row a; and with what is known of the curve or of the ratio.
+Positions, rates, accelerations and efforts are compared with the joints alone, closed by Newton's method, and
+with what the books print: R. L. Norton, *Design of Machinery*, tables P4-1 to P4-3, row a; and with what is
+known of the curve or of the ratio.
 """
 
 import numpy as np
@@ -21,7 +23,10 @@ HEAD = """title = {{ fr = "Mécanisme", en = "Mechanism" }}
 [bodies]
 {bodies}
 """
-FOUR = '2 = { at = "O", angle = "theta2", points = { A = "r2" } }\n3 = { points = { A = "0 mm", B = "r3" } }\n4 = { at = "C", points = { B = "r4" } }'
+FOUR = (
+    '2 = { at = "O", angle = "theta2", points = { A = "r2" } }\n3 = { points = { A = "0 mm", B = "r3" } }\n'
+    '4 = { at = "C", points = { B = "r4" } }'
+)
 GROUND_OC = 'O = ["0 mm", "0 mm"]\nC = ["r1", "0 mm"]'
 TURN = 'theta2 = { from = "0 deg", to = "355 deg", step = "5 deg" }\nomega2 = "3 rad/s"\nalpha2 = "5 rad/s^2"'
 ASK = """[ask]
@@ -44,7 +49,8 @@ def bar(r1, r2, r3, r4, side="left", *rest):
 
 #: Stephenson III: a dyad hangs on the coupler of a four-bar linkage.
 STEPHENSON = file_of(
-    f'r1 = "200 mm"\nr2 = {{ from = "40 mm", to = "60 mm", step = "5 mm" }}\nr3 = "170 mm"\nr4 = "150 mm"\n{TURN}\nrequire = "is_crank(2)"',
+    f'r1 = "200 mm"\nr2 = {{ from = "40 mm", to = "60 mm", step = "5 mm" }}\nr3 = "170 mm"\nr4 = "150 '
+    f'mm"\n{TURN}\nrequire = "is_crank(2)"',
     f'{GROUND_OC}\nF = ["260 mm", "160 mm"]',
     FOUR.replace('B = "r3"', 'B = "r3", P = { r = "90 mm", angle = "40 deg" }')
     + '\n5 = { points = { P = "0 mm", E = "200 mm" } }\n6 = { at = "F", points = { E = "150 mm" } }',
@@ -64,9 +70,11 @@ torque = { load = [{ on = "6", moment = "9 N*m" }, { on = "P", force = "50 N", a
 )
 #: The ends of a bar slide on two lines at right angles; its points go on ellipses. A length drives.
 TRAMMEL = file_of(
-    'a = "200 mm"\nb = "70 mm"\nx = { from = "30 mm", to = "150 mm", step = "5 mm" }\nx_dot = "80 mm/s"\nx_ddot = "20 mm/s^2"',
+    'a = "200 mm"\nb = "70 mm"\nx = { from = "30 mm", to = "150 mm", step = "5 mm" }\nx_dot = "80 '
+    'mm/s"\nx_ddot = "20 mm/s^2"',
     'O = ["0 mm", "0 mm"]',
-    '2 = { points = { A = "0 mm" } }\n3 = { points = { A = "0 mm", B = "a", P = "b" } }\n4 = { points = { B = "0 mm" } }',
+    '2 = { points = { A = "0 mm" } }\n3 = { points = { A = "0 mm", B = "a", P = "b" } }\n4 = { points '
+    '= { B = "0 mm" } }',
     """[slides]
 A = { of = "2", on = "ground", through = "O", along = "0 deg", distance = "x" }
 B = { of = "4", on = "ground", through = "O", along = "90 deg", distance = "y" }
@@ -82,7 +90,8 @@ thrust = { load = { on = "B", force = "40 N", angle = "90 deg" } }
 OLDHAM = file_of(
     f'e = "15 mm"\n{TURN}',
     'O = ["0 mm", "0 mm"]\nQ = ["e", "0 mm"]',
-    '2 = { at = "O", angle = "theta2", points = { A = "40 mm" } }\n3 = { points = { K = "0 mm" } }\n4 = { at = "Q", points = { D = "40 mm" } }',
+    '2 = { at = "O", angle = "theta2", points = { A = "40 mm" } }\n3 = { points = { K = "0 mm" } }\n4 '
+    '= { at = "Q", points = { D = "40 mm" } }',
     """[slides]
 K = { of = "3", on = "2", through = "O", along = "0 deg", distance = "u" }
 Q = { of = "4", on = "3", through = "K", along = "90 deg", distance = "v" }
@@ -95,7 +104,8 @@ torque = { load = { on = "4", moment = "9 N*m" } }
 )
 #: Watt's parallel motion: the middle of the coupler follows a straight line to a thousandth of its length.
 WATT = file_of(
-    'r2 = "200 mm"\nr3 = "100 mm"\ntheta2 = { from = "-20 deg", to = "20 deg", step = "1 deg" }\nomega2 = "3 rad/s"\nalpha2 = "5 rad/s^2"',
+    'r2 = "200 mm"\nr3 = "100 mm"\ntheta2 = { from = "-20 deg", to = "20 deg", step = "1 deg" }\n'
+    'omega2 = "3 rad/s"\nalpha2 = "5 rad/s^2"',
     'O = ["0 mm", "0 mm"]\nC = ["400 mm", "100 mm"]',
     FOUR.replace('B = "r3"', 'B = "r3", M = "r3 / 2"').replace('B = "r4"', 'B = "r2"'),
     '[assembly]\nB = "left of A -> C"',
@@ -104,7 +114,8 @@ WATT = file_of(
 SLIDER = file_of(
     f'r2 = "35.56 mm"\nr3 = "101.6 mm"\ne = "25.4 mm"\n{TURN}',
     'O = ["0 mm", "0 mm"]',
-    '2 = { at = "O", angle = "theta2", points = { A = "r2" } }\n3 = { points = { A = "0 mm", B = "r3" } }\n4 = { points = { B = "0 mm" } }',
+    '2 = { at = "O", angle = "theta2", points = { A = "r2" } }\n3 = { points = { A = "0 mm", B = "r3" '
+    '} }\n4 = { points = { B = "0 mm" } }',
     """[slides]
 B = { of = "4", on = "ground", through = ["0 mm", "e"], along = "0 deg", distance = "x" }
 [ask]
@@ -114,11 +125,13 @@ accelerations = ["x_ddot"]
 torque = { load = { on = "B", force = "60 N" } }
 """,
 )
-#: Of Norton's inverted slider-crank the block slides on the bar that is pinned to the ground, at right angles to the arm of 4 in.
+#: Of Norton's inverted slider-crank the block slides on the bar that is pinned to the ground, at right angles
+#: to the arm of 4 in.
 INVERTED = file_of(
     f'r1 = "152.4 mm"\nr2 = "50.8 mm"\nr4 = "101.6 mm"\n{TURN}',
     GROUND_OC,
-    '2 = { at = "O", angle = "theta2", points = { A = "r2" } }\n3 = { points = { A = "0 mm" } }\n4 = { at = "C", points = { D = "r4" } }',
+    '2 = { at = "O", angle = "theta2", points = { A = "r2" } }\n3 = { points = { A = "0 mm" } }\n4 = { '
+    'at = "C", points = { D = "r4" } }',
     """[slides]
 A = { of = "3", on = "4", through = "D", along = "90 deg", distance = "b" }
 [ask]
@@ -128,7 +141,8 @@ accelerations = ["alpha4", "b_ddot"]
 torque = { load = { on = "4", moment = "9 N*m" } }
 """,
 )
-#: Hart's inversor: of a crossed parallelogram three points on a parallel to its diagonals are inverse to each other.
+#: Hart's inversor: of a crossed parallelogram three points on a parallel to its diagonals are inverse to each
+#: other.
 HART = file_of(
     'a = { from = "160 mm", to = "180 mm", step = "2 mm" }\nb = "80 mm"\nc = "26 mm"\n'
     'theta2 = { from = "-25 deg", to = "25 deg", step = "1 deg" }\nomega2 = "5 rad/s"\nalpha2 = "5 rad/s^2"',
@@ -144,10 +158,13 @@ HART = file_of(
     .replace('"alpha4", "a_B"', '"a_Q"')
     .replace('moment = "9 N*m"', 'moment = "2 N*m"'),
 )
-#: A desk lamp of two parallelograms: the plate between them never turns, and a stay lowers the second as the first is raised.
+#: A desk lamp of two parallelograms: the plate between them never turns, and a stay lowers the second as the
+#: first is raised.
 LAMP = file_of(
-    'b = "40 mm"\nr2 = { from = "320 mm", to = "380 mm", step = "5 mm" }\nr5 = { from = "280 mm", to = "340 mm", step = "5 mm" }\n'
-    'k = "90 mm"\ntheta2 = { from = "60 deg", to = "110 deg", step = "1 deg" }\nomega2 = "0.5 rad/s"\nalpha2 = "1 rad/s^2"',
+    'b = "40 mm"\nr2 = { from = "320 mm", to = "380 mm", step = "5 mm" }\nr5 = { from = "280 mm", to = '
+    '"340 mm", step = "5 mm" }\n'
+    'k = "90 mm"\ntheta2 = { from = "60 deg", to = "110 deg", step = "1 deg" }\nomega2 = "0.5 rad/s"\n'
+    'alpha2 = "1 rad/s^2"',
     'O = ["0 mm", "0 mm"]\nC = ["b", "0 mm"]',
     """2 = { at = "O", angle = "theta2", points = { A = "r2", U = "r2 - k" } }
 4 = { at = "C", points = { B = "r2" } }
@@ -282,7 +299,8 @@ def test_results_that_books_print_and_theorems_say(course):
 
 @pytest.mark.slow
 def test_change_points_and_dead_centres_have_a_position_and_no_false_rate(course):
-    """In one line the bars have a position; whether a rate exists depends on the way there: a number stands only where it does."""
+    """In one line the bars have a position; whether a rate exists depends on the way there: a number stands
+    only where it does."""
     for name, lengths in (
         ("parallelogram", (200, 60, 200, 60)),
         ("kite", (200, 80, 80, 200)),

@@ -1,4 +1,5 @@
-"""Random wrong numbers get a cause by accident in fewer than one case of a hundred; the commonest slips always, over all exercises."""
+"""Random wrong numbers get a cause by accident in fewer than one case of a hundred; the commonest slips
+always, over all exercises."""
 
 import math
 import random

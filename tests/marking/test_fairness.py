@@ -424,5 +424,10 @@ def test_many_sheets_are_marked_as_each_alone(name):
         for line in lines:
             mark = _waiting(alone[line.part])
             assert (line.verdict, line.points, line.read_as, line.answer, line.feedback, line.matches) == (
-                mark.verdict, mark.points, mark.read_as, mark.answer, mark.feedback, mark.matches,
-            )  # fmt: skip
+                mark.verdict,
+                mark.points,
+                mark.read_as,
+                mark.answer,
+                mark.feedback,
+                mark.matches,
+            )

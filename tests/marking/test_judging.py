@@ -140,8 +140,10 @@ def test_answers_are_judged_from_the_students_own_earlier_ones(variant):
     total = variant.given["sum"]
     answers = {"half": total, "x": total / 2, "y": 1.5 * total}
     assert verdicts(variant, **answers) == {
-        "half": "slip:constant", "x": "follow_through", "y": "follow_through",
-    }  # fmt: skip
+        "half": "slip:constant",
+        "x": "follow_through",
+        "y": "follow_through",
+    }
     # What is right needs no earlier error to explain it.
     assert verdicts(variant, half=total, x=0, y=total)["x"] == "correct"
 
@@ -289,7 +291,8 @@ def test_a_sheet_that_a_judge_cannot_judge_costs_itself_alone(course, tmp_path, 
 
 
 def test_a_number_without_its_drawing_is_sent_to_the_drawing():
-    """In every exercise with a drawing: an unexplained number is told no relation, a scale is called no right answer."""
+    """In every exercise with a drawing: an unexplained number is told no relation, a scale is called no right
+    answer."""
     wrong, scales, tried = [], [], 0
     for name in COURSE.names:
         drawn = {p.judge for p in COURSE[name].spec.parts if p.kind == "point" and p.judge}

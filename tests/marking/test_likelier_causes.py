@@ -1,4 +1,5 @@
-"""What is told of a wrong answer is the likelier cause: found from the whole sheet where one error shows in several boxes."""
+"""What is told of a wrong answer is the likelier cause: found from the whole sheet where one error shows in
+several boxes."""
 
 from __future__ import annotations
 
@@ -41,13 +42,19 @@ WITH_ANGLES = [n for n in COURSE.names if with_angles(n)]
 
 
 TAKING = {
-    "sin": np.sin, "cos": np.cos, "tan": np.tan,
+    "sin": np.sin,
+    "cos": np.cos,
+    "tan": np.tan,
     "polar": lambda length, theta: length * np.exp(1j * np.asarray(theta)),
-}  # fmt: skip
+}
 GIVING = {
-    "asin": np.arcsin, "acos": np.arccos, "atan": np.arctan, "atan2": np.arctan2, "angle": np.angle,
+    "asin": np.arcsin,
+    "acos": np.arccos,
+    "atan": np.arctan,
+    "atan2": np.arctan2,
+    "angle": np.angle,
     "from_radians": lambda theta: theta,
-}  # fmt: skip
+}
 
 
 #: Roots that are approached step by step: in radians they lead anywhere.
@@ -55,10 +62,11 @@ APPROACHED = {"theta_rise", "theta_fall"}
 
 
 def worked_in_radians(variant, monkeypatch, *, converts):
-    """The answers of a student whose calculator is in radians: each step from the ones that were written, to five digits.
+    """The answers of a student whose calculator is in radians: each step from the ones that were written, to
+    five digits.
 
-    Within the solutions functions of degrees are exchanged for those of radians; who ``converts`` writes the angles that
-    come out in degrees, and types them so.
+    Within the solutions functions of degrees are exchanged for those of radians; who ``converts`` writes the
+    angles that come out in degrees, and types them so.
     """
     functions = TAKING if converts else TAKING | GIVING
     known = {getattr(degrees, name): function for name, function in functions.items()}
@@ -98,7 +106,8 @@ def test_a_calculator_in_radians_throughout_costs_one_question(name, converts, m
 @whole_course
 @seeds(1, 12)
 def test_angles_told_in_radians_are_named_once_and_paid_once(seeds):
-    """Each angle alone amid right answers, in whichever kind of part it is asked, then all of a sheet: the first pays."""
+    """Each angle alone amid right answers, in whichever kind of part it is asked, then all of a sheet: the
+    first pays."""
     missed, tried = [], 0
     for variant in (
         v
@@ -137,9 +146,9 @@ def test_angles_told_in_radians_are_named_once_and_paid_once(seeds):
 @whole_course
 @seeds(1, 6)
 def test_two_exchanged_boxes_are_found_and_counted_once(seeds):
-    """In any pair of boxes of numbers, read off a drawing or not, all other answers right: the first pays, the second and
-    what follows do not. Save where another cause explains both, in one pair of ten at most. A scale may be
-    any, for another drawing."""
+    """In any pair of boxes of numbers, read off a drawing or not, all other answers right: the first pays,
+    the second and what follows do not. Save where another cause explains both, in one pair of ten at most. A
+    scale may be any, for another drawing."""
     tried, missed, wrong = 0, [], []
     for name in COURSE.names:
         for variant in distinct_variants(COURSE[name], seeds[0] + 3, len(seeds), "en"):

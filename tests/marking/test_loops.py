@@ -63,23 +63,59 @@ RIGHT = [
     ("slotted_mechanism", "loop_1_x_dot", "rA_dot cos θ4 - rA omega4 sin θ4 = -r2 omega2 sin θ2"),
     ("slotted_mechanism", "loop_1_x_dot", "rA_dot = r2 omega2 sin(theta4 - theta2)"),
     ("slotted_mechanism", "loop_1_y_dot", "rA omega4 = r2 omega2 cos(theta4 - theta2)"),
-    ("slotted_mechanism", "loop_1_y_ddot", "rA alpha4 + 2 rA_dot omega4 = r2 alpha2 cos(theta4 - theta2) + r2 omega2^2 sin(theta4 - theta2)"),
+    (
+        "slotted_mechanism",
+        "loop_1_y_ddot",
+        "rA alpha4 + 2 rA_dot omega4 = r2 alpha2 cos(theta4 - theta2) + r2 omega2^2 sin(theta4 - theta2)",
+    ),
     ("four_bar_positions", "loop_1_x", "-r2*cos(theta2) = r3*cos(theta3) - r1 - r4*cos(theta4)"),
     ("four_bar_positions", "loop_1_y", "2*r2*sin(theta2) + 2*r3*sin(theta3) = 2*r4*sin(theta4)"),
-    ("four_bar_positions", "loop_1_y", "r2*cos(theta2 - pi/2) + r3*cos(theta3 - pi/2) = r4*cos(theta4 - 90°)"),
-    ("four_bar_positions", "loop_1_x", "r2*sin(theta2 + 90) + r3*sin(theta3 + 90) - r4*sin(theta4 + 90) = r1"),
-    ("four_bar_positions", "loop_1_x", "r2*cos(pi*theta2/180) + r3*cos(pi*theta3/180) = r1 + r4*cos(pi*theta4/180)"),
-    ("four_bar_positions", "loop_1_x", "r2*cos(theta2 - theta3) + r3 = r1*cos(theta3) + r4*cos(theta4 - theta3)"),
+    (
+        "four_bar_positions",
+        "loop_1_y",
+        "r2*cos(theta2 - pi/2) + r3*cos(theta3 - pi/2) = r4*cos(theta4 - 90°)",
+    ),
+    (
+        "four_bar_positions",
+        "loop_1_x",
+        "r2*sin(theta2 + 90) + r3*sin(theta3 + 90) - r4*sin(theta4 + 90) = r1",
+    ),
+    (
+        "four_bar_positions",
+        "loop_1_x",
+        "r2*cos(pi*theta2/180) + r3*cos(pi*theta3/180) = r1 + r4*cos(pi*theta4/180)",
+    ),
+    (
+        "four_bar_positions",
+        "loop_1_x",
+        "r2*cos(theta2 - theta3) + r3 = r1*cos(theta3) + r4*cos(theta4 - theta3)",
+    ),
     ("four_bar_positions", "loop_1_x", "r4^2 = (r2 cos θ2 + r3 cos θ3 - r1)^2 + (r2 sin θ2 + r3 sin θ3)^2"),
-    ("four_bar_positions", "loop_1_complex", r"r_2 e^{i\theta_2} + r_3 e^{i\theta_3} = r_1 + r_4 e^{i\theta_4}"),
+    (
+        "four_bar_positions",
+        "loop_1_complex",
+        r"r_2 e^{i\theta_2} + r_3 e^{i\theta_3} = r_1 + r_4 e^{i\theta_4}",
+    ),
     ("four_bar_positions", "loop_1_complex", "r2 (cos θ2 + i sin θ2) + r3 e^(iθ3) - r1 - r4 e^(iθ4) = 0"),
-    ("four_bar_motion", "loop_1_x_dot", "r2 omega2 sin(theta2 - theta4) + r3 omega3 sin(theta3 - theta4) = 0"),
+    (
+        "four_bar_motion",
+        "loop_1_x_dot",
+        "r2 omega2 sin(theta2 - theta4) + r3 omega3 sin(theta3 - theta4) = 0",
+    ),
     ("four_bar_motion", "loop_1_y_dot", "omega4 = r2 omega2 sin(theta2 - theta3)/(r4 sin(theta4 - theta3))"),
-    ("four_bar_motion", "loop_1_complex_dot", "r2 omega2 e^(i theta2) + r3 omega3 e^(i theta3) = r4 omega4 e^(i theta4)"),
+    (
+        "four_bar_motion",
+        "loop_1_complex_dot",
+        "r2 omega2 e^(i theta2) + r3 omega3 e^(i theta3) = r4 omega4 e^(i theta4)",
+    ),
     ("slider_crank", "loop_1_x", "r1 = r2 cos θ2 + r3 cos θ3"),
     ("slider_crank", "loop_1_x", "r1 = r2 cos θ2 + sqrt(r3^2 - (e - r2 sin θ2)^2)"),
     ("slider_crank", "loop_1_y", "sin(theta3) = (e - r2*sin(theta2))/r3"),
-    ("slider_crank", "loop_1_y_ddot", "r3 alpha3 cos θ3 - r3 omega3^2 sin θ3 = r2 omega2^2 sin θ2"),  # alpha2 is 0
+    (
+        "slider_crank",
+        "loop_1_y_ddot",
+        "r3 alpha3 cos θ3 - r3 omega3^2 sin θ3 = r2 omega2^2 sin θ2",
+    ),  # alpha2 is 0
     ("slider_extras", "loop_1_x", "r4*cos(theta4) - r3*cos(theta3) = r2*cos(theta2)"),
     ("slider_extras", "loop_2_x", "r4*cos(theta4 - theta5) - r5 = r6*cos(theta5)"),
     ("quick_return", "loop_2_y", "h = r1 sin θ1 + r4 sin θ4 + r5 sin θ5"),
@@ -102,7 +138,7 @@ RIGHT = [
     ("slider_crank", "loop_1_y", "r2 sin θ2 + r3 sin θ3 - e sin(90) = 0"),
     ("three_loop_shaper", "loop_3_y", "d3 = yD + r5 sin θ5 + r7 sin θ7"),
     ("three_loop_shaper", "loop_2_complex", "r2 e^(iθ2) + r6 e^(i(θ3 + β)) = xD + i yD + d5 e^(iθ5)"),
-]  # fmt: skip
+]
 
 
 @each_row(("name", "part", "text"), RIGHT)
@@ -152,10 +188,20 @@ def test_two_answers_about_a_loop_say_different_things():
 WRAPPED = tuple(
     way.format("(r2 sin(θ2) + r3 sin(θ3) - r4 sin(θ4))", "(r2 sin(θ2) + r3 sin(θ3))", "(r4 sin(θ4))")
     for way in (
-        "atan({0}) = 0", "exp({0}) = 1", "exp({1}) = exp({2})", "sin({0}/r1) = 0", "tan({0}) = 0", "1 + {0} = exp({0})*(1 - {0})",
-        "atan({1}) = atan({2})", "(1 + {0})^3 = 1", "2^{0} = 1", "ln(1 + {0}/r2) = 0", "e^(i*{0}) = 1", "r1*exp({0}) = r1",
+        "atan({0}) = 0",
+        "exp({0}) = 1",
+        "exp({1}) = exp({2})",
+        "sin({0}/r1) = 0",
+        "tan({0}) = 0",
+        "1 + {0} = exp({0})*(1 - {0})",
+        "atan({1}) = atan({2})",
+        "(1 + {0})^3 = 1",
+        "2^{0} = 1",
+        "ln(1 + {0}/r2) = 0",
+        "e^(i*{0}) = 1",
+        "r1*exp({0}) = r1",
     )
-)  # fmt: skip
+)
 
 
 @pytest.mark.parametrize(
@@ -165,21 +211,53 @@ WRAPPED = tuple(
         ("four_bar_positions", "loop_1_x", "cos(theta2)^2 + sin(theta2)^2 = 1", "slip:says_nothing"),
         ("four_bar_positions", "loop_1_y", "(r2 sin θ2 + r3 sin θ3 - r4 sin θ4)^2 = 0", "slip:squared"),
         ("four_bar_positions", "loop_1_y", "atan(r2 sin θ2 + r3 sin θ3 - r4 sin θ4) = 0", "slip:wrapped"),
-        ("four_bar_positions", "loop_1_y", "r2 sin(180/pi*θ2) + r3 sin(180θ3/pi) = r4 sin(180 θ4/pi)", "slip:angle_unit"),
+        (
+            "four_bar_positions",
+            "loop_1_y",
+            "r2 sin(180/pi*θ2) + r3 sin(180θ3/pi) = r4 sin(180 θ4/pi)",
+            "slip:angle_unit",
+        ),
         ("four_bar_motion", "loop_1_y_dot", "r2 sin θ2 + r3 sin θ3 = r4 sin θ4", "slip:not_derived"),
-        ("slider_extras", "loop_2_x", "r2*cos(theta2) + r3*cos(theta3) = r6 + r5*cos(theta5)", "slip:other_loop"),
-        ("four_bar_positions", "loop_1_x", "r2*cos(theta2) + r3*cos(theta3) = r4*cos(theta4)", "slip:link_missing"),
+        (
+            "slider_extras",
+            "loop_2_x",
+            "r2*cos(theta2) + r3*cos(theta3) = r6 + r5*cos(theta5)",
+            "slip:other_loop",
+        ),
+        (
+            "four_bar_positions",
+            "loop_1_x",
+            "r2*cos(theta2) + r3*cos(theta3) = r4*cos(theta4)",
+            "slip:link_missing",
+        ),
         ("four_bar_positions", "loop_1_x", "r2 cos θ2 - r3 cos θ3 = r1 + r4 cos θ4", "slip:link_sign"),
         ("four_bar_positions", "loop_1_x", "r2 cos θ2 + r3 sin θ3 = r1 + r4 cos θ4", "slip:link_axis"),
         ("four_bar_positions", "loop_1_x", "r2 cos θ2 + r3 cos θ2 = r1 + r4 cos θ4", "slip:link_angle"),
-        ("four_bar_positions", "loop_1_x", "r2 cos(θ2 - θ3) - r3 = r1 cos θ3 + r4 cos(θ4 - θ3)", "slip:link_sign"),
+        (
+            "four_bar_positions",
+            "loop_1_x",
+            "r2 cos(θ2 - θ3) - r3 = r1 cos θ3 + r4 cos(θ4 - θ3)",
+            "slip:link_sign",
+        ),
         ("three_loop_shaper", "loop_3_x", "r5 cos θ5 + r7 cos θ7 = 0", "slip:frame_missing"),
-        ("four_bar_motion", "loop_1_x_ddot", "r2 alpha2 sin θ2 + r3 omega3^2 cos θ3 + r3 alpha3 sin θ3 = r4 omega4^2 cos θ4 + r4 alpha4 sin θ4", "slip:link_term"),
-        ("slotted_mechanism", "loop_1_complex_ddot", "r2*(i*alpha2 - omega2^2)*e^(i*theta2) = (rA_ddot - rA*omega4^2 + i*(rA*alpha4 + rA_dot*omega4))*e^(i*theta4)", "slip:link_term"),
+        (
+            "four_bar_motion",
+            "loop_1_x_ddot",
+            "r2 alpha2 sin θ2 + r3 omega3^2 cos θ3 + r3 alpha3 sin θ3 = r4 omega4^2 cos θ4 + r4 alpha4 "
+            "sin θ4",
+            "slip:link_term",
+        ),
+        (
+            "slotted_mechanism",
+            "loop_1_complex_ddot",
+            "r2*(i*alpha2 - omega2^2)*e^(i*theta2) = (rA_ddot - rA*omega4^2 + i*(rA*alpha4 + "
+            "rA_dot*omega4))*e^(i*theta4)",
+            "slip:link_term",
+        ),
         ("four_bar_positions", "loop_1_x", "r2 + r3 = r1 + r4", "wrong"),
         ("four_bar_positions", "loop_1_x", "rA = 3", "unreadable"),
     ],
-)  # fmt: skip
+)
 def test_what_is_missed_is_told(name, part, text, told):
     assert verdict(name, part, text) == told
 
@@ -192,10 +270,14 @@ def test_an_equation_under_a_function_is_not_the_equation():
 @each_row(
     "text",
     [
-        "exp(exp(r1)) = exp(exp(r2))", "exp(r1^3)*(r2 sin θ2 + r3 sin θ3 - r4 sin θ4) = 0", "1e300*r1^60 = 1",
-        "ln(-r1) = 0", "(r2 sin θ2 + r3 sin θ3)/0 = r4", "r2 sin θ2 + r3 sin θ3 = 1.000001 r4 sin θ4",
+        "exp(exp(r1)) = exp(exp(r2))",
+        "exp(r1^3)*(r2 sin θ2 + r3 sin θ3 - r4 sin θ4) = 0",
+        "1e300*r1^60 = 1",
+        "ln(-r1) = 0",
+        "(r2 sin θ2 + r3 sin θ3)/0 = r4",
+        "r2 sin θ2 + r3 sin θ3 = 1.000001 r4 sin θ4",
     ],
-)  # fmt: skip
+)
 def test_what_overflows_or_has_no_value_is_wrong_and_stops_nothing(text):
     assert verdict("four_bar_positions", "loop_1_y", text) == "wrong"
 
@@ -276,7 +358,8 @@ def test_a_wrong_sign_and_a_forgotten_link_are_told_by_the_symbol_of_every_link(
     for k, link in enumerate(links):
         fixed = isinstance(link.vector.length, str) and exercise.spec.given.get(str(link.vector.angle))
         left = [other.name for j, other in enumerate(links) if j != k]
-        # Two bars of given lengths alone close nowhere: who leaves the third link out has no mechanism to be right on.
+        # Two bars of given lengths alone close nowhere: who leaves the third link out has no mechanism to be
+        # right on.
         closes = len(left) > 2 or not set(left) <= set(exercise.spec.given)
         for terms, kind in (
             ([f"-({t})" if j == k else t for j, t in enumerate(right)], "link_sign"),
@@ -355,9 +438,13 @@ def test_an_unknown_part_is_told_with_the_nearest():
 
 def test_a_build_asks_of_each_exercise_the_named_parts_that_it_has():
     issues = issue(
-        COURSE, ("slotted_mechanism", "four_bar_motion"), first_seed=0, count=2, langs=("en",),
+        COURSE,
+        ("slotted_mechanism", "four_bar_motion"),
+        first_seed=0,
+        count=2,
+        langs=("en",),
         parts=("theta4", "omega3", "rA"),
-    )  # fmt: skip
+    )
     assert [i.variant.part_ids for i in issues] == [("rA", "theta4")] * 2 + [("theta4", "omega3")] * 2
     with pytest.raises(coursework.errors.BadInput, match="four_bar_motion has none"):
         issue(
@@ -389,9 +476,14 @@ def test_sheets_say_in_which_symbols_once_for_each_set(name):
 
 def test_equations_of_a_loop_are_printed_in_its_own_order():
     loop = Loop.of(
-        (Vector("r5", "theta4", turn="beta"), Vector("d5", "theta5", -1), Vector("yC", math.pi / 2, -1), Vector(2.5, math.pi)),
+        (
+            Vector("r5", "theta4", turn="beta"),
+            Vector("d5", "theta5", -1),
+            Vector("yC", math.pi / 2, -1),
+            Vector(2.5, math.pi),
+        ),
         {"theta4": ("omega4", "alpha4"), "d5": ("d5_dot", "")},
-    )  # fmt: skip
+    )
     assert loop.equation("x") == "r5*cos(theta4 + beta) = d5*cos(theta5) + 2.5"
     assert loop.equation("y") == "r5*sin(theta4 + beta) = d5*sin(theta5) + yC"
     assert loop.equation("complex") == "r5*e^(i*(theta4 + beta)) = d5*e^(i*theta5) + yC*i + 2.5"
@@ -400,7 +492,8 @@ def test_equations_of_a_loop_are_printed_in_its_own_order():
 
 @every_loop
 def test_derived_equations_are_the_derivatives_of_the_position_equations(name, loop):
-    """Against a difference in time along an arbitrary motion of all symbols, whether the loop closes or not."""
+    """Against a difference in time along an arbitrary motion of all symbols, whether the loop closes or
+    not."""
     found = COURSE[name].solution.loops[loop]
     rng = np.random.default_rng(3)
     names = found.names
@@ -446,9 +539,13 @@ def test_a_part_of_a_loop_bears_its_name():
         Part("closing", kind="equation", variables=("r2",), loop="loop_1")
     parts = loop_equations("a", ("r2", "theta2"), rates=("omega2",), usual=("x", "y_dot"))
     assert [(p.id, p.by_request) for p in parts] == [
-        ("a_x", False), ("a_y", True), ("a_complex", True),
-        ("a_x_dot", True), ("a_y_dot", False), ("a_complex_dot", True),
-    ]  # fmt: skip
+        ("a_x", False),
+        ("a_y", True),
+        ("a_complex", True),
+        ("a_x_dot", True),
+        ("a_y_dot", False),
+        ("a_complex_dot", True),
+    ]
 
 
 def test_a_chain_takes_an_added_angle_by_name():

@@ -358,9 +358,11 @@ def test_an_equation_with_numbers_put_in_is_said_to_be_that(course):
 
 @each_row(
     ("lang", "missing", "scale"),
-    [("fr", "sans réponse : question {} ou {}", "une échelle est positive"),
-     ("en", "without an answer to question {} or {}", "a scale is positive")],
-)  # fmt: skip
+    [
+        ("fr", "sans réponse : question {} ou {}", "une échelle est positive"),
+        ("en", "without an answer to question {} or {}", "a scale is positive"),
+    ],
+)
 def test_what_a_drawing_lacks_and_a_scale_that_is_none_are_told(course, lang, missing, scale):
     said = told(course, "velocity_polygon", 1, lang, kv="10", p="(0;0)")["p"]
     assert said.verdict == "wrong"

@@ -1,4 +1,5 @@
-"""Whatever a program hands over as an answer is judged or unreadable, and nothing of it is believed or printed blindly."""
+"""Whatever a program hands over as an answer is judged or unreadable, and nothing of it is believed or
+printed blindly."""
 
 from __future__ import annotations
 
@@ -49,13 +50,53 @@ def _deep(depth):
 _RING: list = []
 _RING.append(_RING)
 ODD = [
-    10**5000, -(10**5000), Fraction(10**5000, 3), Fraction(1, 3), Decimal("1.5"), Decimal("sNaN"), Decimal("1e999999"),
-    complex("nan"), complex(1, float("inf")), float("nan"), b"12", bytearray(b"12"), memoryview(b"12"), True, None,
-    np.float32(3), np.longdouble(3), np.int64(5), np.bool_(True), np.array([[1, 2], [3, 4]]), np.array(["a"]),
-    np.array([Evil()], dtype=object), np.datetime64("2020-01-01"), np.zeros((300, 300)), [1, [2, [3]]], [], {}, {1, 2},
-    _deep(100_000), _RING, {"a": _RING}, [10**5000], [b"1", None, Evil()], Evil(), EvilText("3"), EvilFloat(3.0),
-    EvilList([1]), lambda: 1, type, range(3), iter([1]), ..., object(), "\0", "\ud800", "9" * 100_000,
-]  # fmt: skip
+    10**5000,
+    -(10**5000),
+    Fraction(10**5000, 3),
+    Fraction(1, 3),
+    Decimal("1.5"),
+    Decimal("sNaN"),
+    Decimal("1e999999"),
+    complex("nan"),
+    complex(1, float("inf")),
+    float("nan"),
+    b"12",
+    bytearray(b"12"),
+    memoryview(b"12"),
+    True,
+    None,
+    np.float32(3),
+    np.longdouble(3),
+    np.int64(5),
+    np.bool_(True),
+    np.array([[1, 2], [3, 4]]),
+    np.array(["a"]),
+    np.array([Evil()], dtype=object),
+    np.datetime64("2020-01-01"),
+    np.zeros((300, 300)),
+    [1, [2, [3]]],
+    [],
+    {},
+    {1, 2},
+    _deep(100_000),
+    _RING,
+    {"a": _RING},
+    [10**5000],
+    [b"1", None, Evil()],
+    Evil(),
+    EvilText("3"),
+    EvilFloat(3.0),
+    EvilList([1]),
+    lambda: 1,
+    type,
+    range(3),
+    iter([1]),
+    ...,
+    object(),
+    "\0",
+    "\ud800",
+    "9" * 100_000,
+]
 BUILT_IN = ("slotted_mechanism", "joint_graph", "joint_twist", "grashof", "mobility", "two_circles")
 
 
@@ -81,8 +122,17 @@ def test_an_odd_answer_to_a_part_of_any_kind_is_judged_or_unreadable(variants, o
 def test_numbers_of_other_kinds_are_the_numbers_that_they_are(course):
     variant = course["slotted_mechanism"].variant(1)
     right = variant.reference("rA")
-    for answer in (np.float64(right), np.float32(right), np.array(right), np.array([right]), np.longdouble(right),
-                   Decimal(str(right)), Fraction(str(round(right, 3))), EvilFloat(right), EvilText(f"{right:.2f} mm")):  # fmt: skip
+    for answer in (
+        np.float64(right),
+        np.float32(right),
+        np.array(right),
+        np.array([right]),
+        np.longdouble(right),
+        Decimal(str(right)),
+        Fraction(str(round(right, 3))),
+        EvilFloat(right),
+        EvilText(f"{right:.2f} mm"),
+    ):
         assert variant.grade({"rA": answer})["rA"].verdict == "correct", type(answer)
 
 

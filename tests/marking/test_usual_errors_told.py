@@ -225,7 +225,8 @@ def test_values_by_the_column_are_those_of_each_alone():
 
 @pytest.mark.parametrize("name", NUMERIC)
 def test_a_cause_is_told_in_symbols_that_the_student_has_seen(name):
-    """Those of what is given or asked; of any other quantity the symbol stands in no sentence, in either language."""
+    """Those of what is given or asked; of any other quantity the symbol stands in no sentence, in either
+    language."""
     for lang in ("en", "fr"):
         (variant,) = distinct_variants(COURSE[name], 0, 1, lang, parts=(ALL,))
         known = {*variant.given, *(part.quantity for part in variant.exercise.spec.parts)}
@@ -246,7 +247,8 @@ def test_a_cause_is_told_in_symbols_that_the_student_has_seen(name):
 
 
 def _holds(piece, seen, unseen):
-    """Return whether a formula is an unseen symbol, or holds one of several letters, once the seen ones are taken out."""
+    """Return whether a formula is an unseen symbol, or holds one of several letters, once the seen ones are
+    taken out."""
     if piece in unseen:
         return True
     for one in seen:

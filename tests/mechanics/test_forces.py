@@ -25,7 +25,8 @@ DRIVEN = [
     if COURSE[name].spec.driver is not None and COURSE[name].solution.mechanism is not None
 ]
 every_mechanism = pytest.mark.parametrize("name", DRIVEN)
-#: Those whose formulas place the mechanism for an angle of the driver at any number of digits, with all that rubs.
+#: Those whose formulas place the mechanism for an angle of the driver at any number of digits, with all that
+#: rubs.
 EXACT = {
     "slider_crank_torque": ("B",),
     "four_bar_motion": (),
@@ -40,7 +41,8 @@ ALL = ("load", "gravity", "inertia", "friction")
 
 
 def weighed(name, rng, pins=True):
-    """Every body a mass, a centre off its origin and an inertia; a load on its last point; friction everywhere."""
+    """Every body a mass, a centre off its origin and an inertia; a load on its last point; friction
+    everywhere."""
     stated = COURSE[name].solution.mechanism
     bodies = {
         body: BodyMass(
@@ -149,7 +151,8 @@ def test_what_acts_on_each_body_adds_up_to_nothing_about_any_point(name):
 
 @every_mechanism
 def test_a_turn_at_a_constant_rate_costs_no_work_without_friction(name):
-    """Gravity and inertia give back what they take; the mean of a periodic function over equal steps is spectrally exact."""
+    """Gravity and inertia give back what they take; the mean of a periodic function over equal steps is
+    spectrally exact."""
     scene = scene_of(name, 5, ("gravity", "inertia"))
     count = 2048
     q = np.arange(count) * (2 * np.pi / count)
@@ -233,8 +236,8 @@ CHANGE = {"r1": 100.0, "r2": 50.0, "r3": 70.0, "r4": 80.0, "omega2": 2.0, "alpha
 @each_row("beside", [1.0, 1e-2, 1e-4, 1e-6, 1e-8])
 @each_row("side", [-1, 1])
 def test_the_effort_keeps_its_digits_beside_a_change_point(beside, side):
-    """Stretched out, the four bars lie on one line: the joints' own equations lose the accelerations there, a thousandth of
-    a degree away, the formulas of the exercise do not."""
+    """Stretched out, the four bars lie on one line: the joints' own equations lose the accelerations there, a
+    thousandth of a degree away, the formulas of the exercise do not."""
     exercise, angle = COURSE["four_bar_motion"], 180.0 + side * beside
     data = SceneData({b: BodyMass(2.0, 0.01, 20 + 5j) for b in "234"}, (Load("B", force=50.0, angle=30.0),))
     scene = Scene(exercise, {**CHANGE, "theta2": angle}, ("load", "gravity", "inertia"), (), data)
@@ -243,13 +246,15 @@ def test_the_effort_keeps_its_digits_beside_a_change_point(beside, side):
         gravity=True, inertia=True, loads=[("B", force)]
     )["effort"]
     found = scene.forces.over(np.radians([angle]), np.array([2.0]), np.array([3.0])).effort[0]
-    # The driver's angle in radians is rounded once more than in degrees: the effort goes as 1 / distance there.
+    # The driver's angle in radians is rounded once more than in degrees: the effort goes as 1 / distance
+    # there.
     allowed = 8 * np.finfo(float).eps * (1 + 180.0 / beside)
     assert found == pytest.approx(float(exact), rel=allowed)
 
 
 def test_a_ring_on_the_ground_bears_as_virtual_power_says():
-    """A pinion on a crank rolls inside a fixed ring whose centre is not the origin: rates by rolling, forces by both ways."""
+    """A pinion on a crank rolls inside a fixed ring whose centre is not the origin: rates by rolling, forces
+    by both ways."""
     mechanism = Mechanism(
         ground={"O": 50 + 20j},
         bodies=(Body("2", "theta2", "O", {"A": "r2"}), Body("3", None, "A", mass=2.0, inertia=0.01)),

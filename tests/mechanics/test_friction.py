@@ -38,7 +38,8 @@ def upright(friction, omega=2.0, force=-400.0, lengths=None, **added):
 
 
 def test_friction_in_a_slide_helps_to_hold_and_hinders_to_push():
-    """400 N on the piston: R (4/5 + 3/5 / 2) in the rod one way, R (4/5 - 3/5 / 2) the other; the torque is 0.03 m R."""
+    """400 N on the piston: R (4/5 + 3/5 / 2) in the rod one way, R (4/5 - 3/5 / 2) the other; the torque is
+    0.03 m R."""
     assert upright({"B": 0.5}).effort[0] == pytest.approx(-0.03 * 400 * 0.8 / (0.8 + 0.3), rel=1e-13)
     assert upright({"B": 0.5}, omega=-2.0).effort[0] == pytest.approx(
         -0.03 * 400 * 0.8 / (0.8 - 0.3), rel=1e-13
@@ -69,7 +70,8 @@ def test_a_long_slide_bears_on_both_of_its_edges():
     data = SceneData(loads=(Load("4", moment=6.0),), friction={"B": 0.1}, lengths={"B": 60.0})
     scene = Scene(COURSE["slider_crank"], UPRIGHT, ("load", "friction"), (), data)
     borne = scene.forces.over(np.radians([90.0]), np.array([2.0]), np.zeros(1), joints=True)
-    # The piston moves to -x; the friction of 2 x 0.1 x 100 N, and what the rod's obliquity adds, holds it back.
+    # The piston moves to -x; the friction of 2 x 0.1 x 100 N, and what the rod's obliquity adds, holds it
+    # back.
     edges = 6.0 / 0.06
     friction = borne.rubs["B slide"][0]
     normal, moment = borne.joints["B slide_n"][0], borne.joints["B slide_m"][0]
@@ -97,7 +99,8 @@ def test_a_long_slide_bears_on_both_of_its_edges():
 
 @each_row("way", [1.0, -1.0])
 def test_a_journal_takes_its_coefficient_times_its_radius_times_what_it_bears(way):
-    """A weight on the crank's pin, friction in the shaft alone: the drive adds f r m g whichever way it turns."""
+    """A weight on the crank's pin, friction in the shaft alone: the drive adds f r m g whichever way it
+    turns."""
     data = SceneData(bodies={"2": BodyMass(mass=20.0)}, friction={"O": (0.1, 15.0)})
     given = {**UPRIGHT, "omega2": way}
     scene = Scene(COURSE["slider_crank"], given, ("gravity", "friction"), (), data)

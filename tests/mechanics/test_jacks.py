@@ -1,4 +1,5 @@
-"""A jack as a driver: its thrust and its motion by other roads, what it refuses, and every exercise that states one."""
+"""A jack as a driver: its thrust and its motion by other roads, what it refuses, and every exercise that
+states one."""
 
 from __future__ import annotations
 
@@ -45,7 +46,8 @@ def scene(seed, *effects, show=(), **changes):
 
 
 def test_every_exercise_whose_driver_moves_by_a_length_is_a_scene():
-    """A driver whose rate is given in mm/s is a jack, and says so; its scene closes from end to end in every draw."""
+    """A driver whose rate is given in mm/s is a jack, and says so; its scene closes from end to end in every
+    draw."""
     faults = []
     for name in COURSE:
         exercise = COURSE[name]
@@ -170,7 +172,8 @@ def energies(given, length):
 
 @pytest.mark.parametrize("seed", sampled(range(12), range(3)))
 def test_thrust_is_what_energies_say(seed):
-    """Lagrange: M L'' + M' L'^2 / 2 + V', M and V of the bodies where two circles cross, slopes by differences."""
+    """Lagrange: M L'' + M' L'^2 / 2 + V', M and V of the bodies where two circles cross, slopes by
+    differences."""
     own = scene(seed, "load", "gravity", "inertia", show=("drive_thrust", "drive_power", "kinetic_energy"))
     columns, given = own.over_cycle(6).columns, own.given
     pace, gain = given["L_dot"] / 1000, given["L_ddot"] / 1000
@@ -187,8 +190,8 @@ def test_thrust_is_what_energies_say(seed):
 
 
 def test_thrust_by_hand_where_the_jack_stands_square_to_the_level_body():
-    """OBA is a 3-4-5 triangle at the shortest length: moments about O, 200 cos 30 deg beside 400; friction in the slide
-    bears nothing, a motion the other way changes no sign."""
+    """OBA is a 3-4-5 triangle at the shortest length: moments about O, 200 cos 30 deg beside 400; friction in
+    the slide bears nothing, a motion the other way changes no sign."""
     given = {
         "a": 400,
         "xB": 400,
@@ -249,7 +252,8 @@ def test_a_jack_longer_than_its_reach_leaves_cells_empty_and_a_dead_point_is_tol
 
 
 def test_at_rest_the_thrust_is_that_of_statics():
-    """Without a rate, and told: the note names the rate of the jack; gravity alone is the same at any rate."""
+    """Without a rate, and told: the note names the rate of the jack; gravity alone is the same at any
+    rate."""
     at_rest = scene(0, "gravity", "friction")
     at_rest = replace(at_rest, given={n: v for n, v in at_rest.given.items() if n not in ("L_dot", "L_ddot")})
     table = at_rest.over_cycle(4)
@@ -333,10 +337,22 @@ A = 0.1
 @each_row(
     ("lang", "rate", "most", "ends", "refused"),
     [
-        ("en", "0.12 m/s", "2.5 kN", "(L_min, the jack is shortest)", "a flywheel belongs to a crank that turns"),
-        ("fr", "0,12 m/s", "2,5 kN", "(L_min, vérin au plus court)", "un volant d’inertie suppose une manivelle qui tourne"),
+        (
+            "en",
+            "0.12 m/s",
+            "2.5 kN",
+            "(L_min, the jack is shortest)",
+            "a flywheel belongs to a crank that turns",
+        ),
+        (
+            "fr",
+            "0,12 m/s",
+            "2,5 kN",
+            "(L_min, vérin au plus court)",
+            "un volant d’inertie suppose une manivelle qui tourne",
+        ),
     ],
-)  # fmt: skip
+)
 def test_a_scene_file_with_a_jack_runs_in_either_language(
     lang, rate, most, ends, refused, tmp_path, monkeypatch, capsys
 ):
@@ -376,10 +392,14 @@ def test_the_scene_of_the_documentation_shows_the_thrust(tmp_path):
     [
         ('effects = ["flywheel"]', "line 2", "a flywheel"),
         ('effects = ["inertia"]\ndrive = { torque = "5 N*m" }', "line 3", "a torque in time"),
-        ('[[loads]]\non = "G"\nforce = "9 N"\nagainst = "motion"\nduring = "working stroke"', "line 6", "the working stroke"),
+        (
+            '[[loads]]\non = "G"\nforce = "9 N"\nagainst = "motion"\nduring = "working stroke"',
+            "line 6",
+            "the working stroke",
+        ),
         ('show = ["drive_torque"]', "line 2", "show drive_thrust"),
     ],
-)  # fmt: skip
+)
 def test_what_a_file_asks_of_a_jack_in_vain_is_told_with_its_line(wrong, line, what, tmp_path):
     path = tmp_path / "scene.toml"
     path.write_text(f'exercise = "jack_mechanism"\n{wrong}\n', "utf-8")

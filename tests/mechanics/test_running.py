@@ -1,4 +1,5 @@
-"""Motions in time: energy, sticking and leaving, motors, limits; against closed forms and an independent integration."""
+"""Motions in time: energy, sticking and leaving, motors, limits; against closed forms and an independent
+integration."""
 
 from __future__ import annotations
 
@@ -45,9 +46,13 @@ def test_a_pendulum_swings_as_one_does():
     """Against the equation of the pendulum, integrated on its own."""
     table = pendulum(20.0).in_time(0.0, 2.0, count=50)
     alone = solve_ivp(
-        lambda t, y: [y[1], -2.0 * 9.81 * 0.06 * math.cos(y[0]) / INERTIA], (0, 2.0), [math.radians(20.0), 0.0],
-        rtol=1e-12, atol=1e-12, dense_output=True,
-    )  # fmt: skip
+        lambda t, y: [y[1], -2.0 * 9.81 * 0.06 * math.cos(y[0]) / INERTIA],
+        (0, 2.0),
+        [math.radians(20.0), 0.0],
+        rtol=1e-12,
+        atol=1e-12,
+        dense_output=True,
+    )
     found = np.radians(table.columns["theta2"])
     np.testing.assert_allclose(found, alone.sol(table.columns["t"])[0], atol=1e-7)
     assert table.balance < 1e-7
@@ -83,7 +88,8 @@ def test_a_motor_runs_up_to_where_its_line_meets_the_load():
 
 @pytest.mark.parametrize("angles", [(-90.0, 80.0), pytest.param((30.0, 200.0), marks=pytest.mark.slow)])
 def test_at_rest_it_stays_while_the_drive_is_within_what_holds_it(angles):
-    """A journal of f r = 1.5 mm bears the weight of the crank: it holds as long as |drive - weight's torque| <= f r m g."""
+    """A journal of f r = 1.5 mm bears the weight of the crank: it holds as long as |drive - weight's torque|
+    <= f r m g."""
     held = 0.3 * 0.005 * 2.0 * 9.81
     friction = {"O": (0.3, 5.0)}
     for theta2 in angles:
@@ -102,7 +108,8 @@ def test_at_rest_it_stays_while_the_drive_is_within_what_holds_it(angles):
 
 
 def test_a_run_with_friction_ends_and_says_when():
-    """Without a drive the crank comes to rest, within what friction can hold there, and stays for the rest of the run."""
+    """Without a drive the crank comes to rest, within what friction can hold there, and stays for the rest of
+    the run."""
     exercise = COURSE["slider_crank_torque"]
     scene = Scene(exercise, exercise.variant(0).used, ("gravity", "inertia", "friction"))
     table = scene.in_time(0.0, 6.0)
@@ -119,7 +126,8 @@ def test_a_run_with_friction_ends_and_says_when():
 
 
 def test_energy_is_lost_to_friction_alone():
-    """Kinetic and potential energy, from positions and speeds, fall by the work of the friction force, summed apart."""
+    """Kinetic and potential energy, from positions and speeds, fall by the work of the friction force, summed
+    apart."""
     exercise = COURSE["slider_crank_torque"]
     given = {**exercise.variant(1).used, "omega2": 20.0}
     scene = Scene(
@@ -149,7 +157,8 @@ def _middle(values):
 )
 @pytest.mark.parametrize("friction", [False, True])
 def test_the_table_moves_as_the_equations_themselves(name, friction):
-    """The acceleration read from the table, beside that for which the equilibrium of all bodies gives the drive."""
+    """The acceleration read from the table, beside that for which the equilibrium of all bodies gives the
+    drive."""
     exercise = COURSE[name]
     mechanism = exercise.solution.mechanism
     rubs = {s.at: 0.1 for s in mechanism.slides} if friction else {}
@@ -455,14 +464,18 @@ def test_what_no_run_could_use_is_refused(wrong, why):
 
 
 def test_a_load_follows_a_quantity_that_moves():
-    """A spring's force named as a quantity of the exercise, and its direction: what the driver moves is followed."""
+    """A spring's force named as a quantity of the exercise, and its direction: what the driver moves is
+    followed."""
     given = {**CRANK, "omega2": 2.0}
     load = Load("B", force="r1", angle="theta3")
     scene = Scene(COURSE["slider_crank"], given, ("load", "position"), (), SceneData(loads=(load,)))
     columns = scene.over_cycle(24).columns
-    power = columns["r1"] * np.cos(np.radians(columns["theta3"])) * scene.exercise.solve(
-        **{**given, "theta2": columns["theta2"]}, only="r1_dot"
-    )["r1_dot"] / 1000  # fmt: skip
+    power = (
+        columns["r1"]
+        * np.cos(np.radians(columns["theta3"]))
+        * scene.exercise.solve(**{**given, "theta2": columns["theta2"]}, only="r1_dot")["r1_dot"]
+        / 1000
+    )
     np.testing.assert_allclose(columns["drive_torque"] * 2.0, -power, atol=1e-9)
     with pytest.raises(WrongValue, match="changes with the driver's speed"):
         Scene(

@@ -55,9 +55,33 @@ def test_a_right_and_a_wrong_answer_in_one_box_are_not_right(exercise_of, name, 
 
 @each_row(
     "text",
-    ["1 [2]", "(2) (1)", "(2)(1)", "2:1", "2 : 1", "2* 1", "2*1", "2, 1", "2 1", "2/1", "2 + 0", "2 - 0*7", "2^1", "1 × 2", "2;1",
-     "m_u = 0 (not m_u = 1)", "not 1 : 2", "two = 1", "un : 2", "80 ± 2", "x or 1 = 2", "2 (1) ddl", "((2) 1)", "~~1~~ 2"],
-)  # fmt: skip
+    [
+        "1 [2]",
+        "(2) (1)",
+        "(2)(1)",
+        "2:1",
+        "2 : 1",
+        "2* 1",
+        "2*1",
+        "2, 1",
+        "2 1",
+        "2/1",
+        "2 + 0",
+        "2 - 0*7",
+        "2^1",
+        "1 × 2",
+        "2;1",
+        "m_u = 0 (not m_u = 1)",
+        "not 1 : 2",
+        "two = 1",
+        "un : 2",
+        "80 ± 2",
+        "x or 1 = 2",
+        "2 (1) ddl",
+        "((2) 1)",
+        "~~1~~ 2",
+    ],
+)
 def test_a_count_is_one_number(text):
     reading = read_integer(text)
     assert reading.status == "unreadable", reading
@@ -66,13 +90,33 @@ def test_a_count_is_one_number(text):
 @each_row(
     ("text", "unit"),
     [
-        ("319.8 [250]", "mm"), ("(319.8) (250) mm", "mm"), ("319.8, 250", "mm"), ("0 319.8", "mm"), ("0,319.8", "mm"), ("319.8 * 1 mm", "mm"),
-        ("319.8 (1) mm", "mm"), ("319.8 1 mm", "mm"), ("not 250 : 319.8", "mm"), ("rA 250,5 = 319,8", "mm"), ("319.8 (3e2)", "mm"),
-        ("700 (1e3)", "mm"), ("319.8 (0e9)", "mm"), ("3 + 5/2π", "mm"), ("8/2(1.8)", "mm"), ("8/2 sqrt(3.3)", "mm"), ("8/2π^0.52", "mm"),
-        ("3 + 5/2π rad", "deg"), ("3 + 5/2π", "deg"), ("10 + arctan(3.46)", "deg"), ("acos(0.5)^2", "deg"), ("asin(sin(5))", "deg"),
-        ("180 - π/3", "deg"), ("5 - 3π + 60/π", "deg"), ("40 - acos(0.5)*180/π + atan(2)", "deg"),
+        ("319.8 [250]", "mm"),
+        ("(319.8) (250) mm", "mm"),
+        ("319.8, 250", "mm"),
+        ("0 319.8", "mm"),
+        ("0,319.8", "mm"),
+        ("319.8 * 1 mm", "mm"),
+        ("319.8 (1) mm", "mm"),
+        ("319.8 1 mm", "mm"),
+        ("not 250 : 319.8", "mm"),
+        ("rA 250,5 = 319,8", "mm"),
+        ("319.8 (3e2)", "mm"),
+        ("700 (1e3)", "mm"),
+        ("319.8 (0e9)", "mm"),
+        ("3 + 5/2π", "mm"),
+        ("8/2(1.8)", "mm"),
+        ("8/2 sqrt(3.3)", "mm"),
+        ("8/2π^0.52", "mm"),
+        ("3 + 5/2π rad", "deg"),
+        ("3 + 5/2π", "deg"),
+        ("10 + arctan(3.46)", "deg"),
+        ("acos(0.5)^2", "deg"),
+        ("asin(sin(5))", "deg"),
+        ("180 - π/3", "deg"),
+        ("5 - 3π + 60/π", "deg"),
+        ("40 - acos(0.5)*180/π + atan(2)", "deg"),
     ],
-)  # fmt: skip
+)
 def test_two_numbers_and_a_formula_of_two_units_wait_for_a_person(text, unit):
     reading = read_number(text, unit)
     assert (reading.status, reading.code) == ("unreadable", "two_values") or reading.code == "not_a_number"
@@ -81,18 +125,49 @@ def test_two_numbers_and_a_formula_of_two_units_wait_for_a_person(text, unit):
 @each_row(
     ("text", "unit", "value"),
     [
-        ("2*3", "mm", 6), ("0.2*10+1", "mm", 3), ("2 × 3.5", "mm", 7), ("3(4 - 1) - 2(4)", "mm", 1), ("2(3 + 4)", "mm", 14), ("1.25:1", "1", 1.25), ("3/1", "1", 3),
-        ("1 - 0 = 1", "mm", 1), ("4 - 5 = -1", "mm", -1), ("3 = 3.0", "mm", 3), ("273.9 (273.92)", "mm", 273.9), ("omega 2 = 5", "mm", 5),
-        ("θ_{2} : 5", "mm", 5), ("O2A = 5", "mm", 5), ("5 [mm]", "mm", 5), ("5 1/s", "rad/s", 5), ("5 rad 1/s", "rad/s", 5), ("-(5)", "mm", -5),
-        ("|-5|", "mm", None), ("abs(-5)", "mm", 5), ("180 - arctan(1.59)", "deg", 180 - math.degrees(math.atan(1.59))),
-        ("π - arctan(1.59)", "deg", 180 - math.degrees(math.atan(1.59))), ("π - 1.01", "deg", 180 - math.degrees(1.01)),
-        ("2π/3", "deg", 120), ("3/2π", "deg", 270), ("1.8256*180/π", "deg", 1.8256 * 180 / math.pi), ("60*π/180", "deg", 60),
-        ("1.8256 rad = 104.6°", "deg", 104.6), ("1.8256 = 104.6", "deg", 104.6), ("1.826 (104.6)", "deg", 104.6), ("104.6 (1.826)", "deg", 104.6),
-        ("3.14159 - atan(1.6)", "deg", math.degrees(3.14159 - math.atan(1.6))), ("1.571 + asin(0.5)", "deg", math.degrees(1.571 + math.pi / 6)),
-        ("arctan(80*sin(57)/(120 - 80*cos(57)))", "deg", math.degrees(math.atan2(80 * math.sin(math.radians(57)), 120 - 80 * math.cos(math.radians(57))))),
-        ("acos(0.5)*180/π", "deg", 60), ("2*arctan(0.5)", "deg", math.degrees(2 * math.atan(0.5))), ("acos(0.5) + 15.5 deg", "deg", 75.5),
+        ("2*3", "mm", 6),
+        ("0.2*10+1", "mm", 3),
+        ("2 × 3.5", "mm", 7),
+        ("3(4 - 1) - 2(4)", "mm", 1),
+        ("2(3 + 4)", "mm", 14),
+        ("1.25:1", "1", 1.25),
+        ("3/1", "1", 3),
+        ("1 - 0 = 1", "mm", 1),
+        ("4 - 5 = -1", "mm", -1),
+        ("3 = 3.0", "mm", 3),
+        ("273.9 (273.92)", "mm", 273.9),
+        ("omega 2 = 5", "mm", 5),
+        ("θ_{2} : 5", "mm", 5),
+        ("O2A = 5", "mm", 5),
+        ("5 [mm]", "mm", 5),
+        ("5 1/s", "rad/s", 5),
+        ("5 rad 1/s", "rad/s", 5),
+        ("-(5)", "mm", -5),
+        ("|-5|", "mm", None),
+        ("abs(-5)", "mm", 5),
+        ("180 - arctan(1.59)", "deg", 180 - math.degrees(math.atan(1.59))),
+        ("π - arctan(1.59)", "deg", 180 - math.degrees(math.atan(1.59))),
+        ("π - 1.01", "deg", 180 - math.degrees(1.01)),
+        ("2π/3", "deg", 120),
+        ("3/2π", "deg", 270),
+        ("1.8256*180/π", "deg", 1.8256 * 180 / math.pi),
+        ("60*π/180", "deg", 60),
+        ("1.8256 rad = 104.6°", "deg", 104.6),
+        ("1.8256 = 104.6", "deg", 104.6),
+        ("1.826 (104.6)", "deg", 104.6),
+        ("104.6 (1.826)", "deg", 104.6),
+        ("3.14159 - atan(1.6)", "deg", math.degrees(3.14159 - math.atan(1.6))),
+        ("1.571 + asin(0.5)", "deg", math.degrees(1.571 + math.pi / 6)),
+        (
+            "arctan(80*sin(57)/(120 - 80*cos(57)))",
+            "deg",
+            math.degrees(math.atan2(80 * math.sin(math.radians(57)), 120 - 80 * math.cos(math.radians(57)))),
+        ),
+        ("acos(0.5)*180/π", "deg", 60),
+        ("2*arctan(0.5)", "deg", math.degrees(2 * math.atan(0.5))),
+        ("acos(0.5) + 15.5 deg", "deg", 75.5),
     ],
-)  # fmt: skip
+)
 def test_a_formula_and_a_number_that_is_checked_are_one_value(text, unit, value):
     reading = read_number(text, unit, thousands=unit != "deg")
     if value is None:
@@ -111,8 +186,20 @@ LETTERS = {"I": "a", "II": "b", "none": "c"}
 
 
 @each_row(
-    "text", ["1) I 2) none", "I (not II)", "I or II", "I [II]", "a (not b)", "a (b)", "~~a~~ b", "a b", "1) a", "2) I"]
-)  # fmt: skip
+    "text",
+    [
+        "1) I 2) none",
+        "I (not II)",
+        "I or II",
+        "I [II]",
+        "a (not b)",
+        "a (b)",
+        "~~a~~ b",
+        "a b",
+        "1) a",
+        "2) I",
+    ],
+)
 def test_two_choices_are_none(text):
     assert read_choice(text, CLASSES).status == read_choice(text, CLASSES, LETTERS).status == "unreadable"
 
@@ -148,7 +235,8 @@ _DEGREES = math.degrees(1.0)
 
 
 def hedges(one: float, other: float) -> Iterator[str]:
-    """Formulas worth ``one`` in one way to read them and ``other`` in another, both freely chosen; angles in degrees."""
+    """Formulas worth ``one`` in one way to read them and ``other`` in another, both freely chosen; angles in
+    degrees."""
     for turn in range(-3, 4):  # added to an inverse function: in degrees or in radians
         added = (other - one + 360 * turn) / (_DEGREES - 1)
         left = math.remainder(one - added, 360)

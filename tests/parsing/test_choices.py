@@ -30,9 +30,15 @@ def test_a_choice_is_known_by_key_or_label(text, key):
 
 @each_row(
     ("text", "code"),
-    [("rocker", "not_a_choice"), ("b) rocker", "not_a_choice"), (True, "not_a_choice"), (1.0, "not_a_choice"),
-     ("x" * 10_000, "too_long"), *[(s, "not_a_choice") for s in ("a", "(a)", "b)", "c", "d", "0", "1", 1, "2)", "3", "II")]],
-)  # fmt: skip
+    [
+        ("rocker", "not_a_choice"),
+        ("b) rocker", "not_a_choice"),
+        (True, "not_a_choice"),
+        (1.0, "not_a_choice"),
+        ("x" * 10_000, "too_long"),
+        *[(s, "not_a_choice") for s in ("a", "(a)", "b)", "c", "d", "0", "1", 1, "2)", "3", "II")],
+    ],
+)
 def test_what_is_no_choice_says_so(text, code):
     reading = read_choice(text, CHOICES)
     assert (reading.status, reading.code, reading.text) == ("unreadable", code, str(text))
@@ -50,7 +56,22 @@ COUNTS = {"zero": ("0",), "three": ("3",), "one": ("1",)}
 @each_row(
     ("text", "choices", "key"),
     [
-        *[(s, CLASSES, "III") for s in ("3", 3, "3.0", "(3)", "3)", "III", "iii", "classe III", "la classe 3", "class 3", "trois")],
+        *[
+            (s, CLASSES, "III")
+            for s in (
+                "3",
+                3,
+                "3.0",
+                "(3)",
+                "3)",
+                "III",
+                "iii",
+                "classe III",
+                "la classe 3",
+                "class 3",
+                "trois",
+            )
+        ],
         *[(s, CLASSES, "II") for s in ("2", "II", "classe II", "2.", "two")],
         ("4", CLASSES, "IV"),
         *[(s, PAIRS, "two") for s in ("2", "deux", "Two", "2 paires", "2 pairs", "deux paires")],
@@ -59,16 +80,31 @@ COUNTS = {"zero": ("0",), "three": ("3",), "one": ("1",)}
         ("zéro", COUNTS, "zero"),
         ("1", COUNTS, "one"),
     ],
-)  # fmt: skip
+)
 def test_a_number_names_the_label_that_it_begins_and_never_a_place(text, choices, key):
     assert read_choice(text, choices).values == (key,)
 
 
 @each_row(
     ("text", "choices"),
-    [("1", CLASSES), ("5", CLASSES), ("2", COUNTS), ("4", PAIRS), ("2 pivots", PAIRS), ("b", CLASSES), ("2 ou 3", CLASSES),
-     ("1", {"two_rockers": ("deux balanciers",), "one": ("une manivelle",), "two_cranks": ("deux manivelles",)})],
-)  # fmt: skip
+    [
+        ("1", CLASSES),
+        ("5", CLASSES),
+        ("2", COUNTS),
+        ("4", PAIRS),
+        ("2 pivots", PAIRS),
+        ("b", CLASSES),
+        ("2 ou 3", CLASSES),
+        (
+            "1",
+            {
+                "two_rockers": ("deux balanciers",),
+                "one": ("une manivelle",),
+                "two_cranks": ("deux manivelles",),
+            },
+        ),
+    ],
+)
 def test_a_number_that_begins_no_label_or_tells_none_apart_is_no_choice(text, choices):
     assert read_choice(text, choices).code == "not_a_choice"
 
@@ -110,8 +146,15 @@ def test_a_label_of_two_choices_chooses_neither():
 
 @each_row(
     ("text", "key"),
-    [("isostatique", "iso"), ("Hyperstatic", "hyper"), ("un pivot", "pivot"), ("none", "none"), ("aucune", "none"), ("II", "II")],
-)  # fmt: skip
+    [
+        ("isostatique", "iso"),
+        ("Hyperstatic", "hyper"),
+        ("un pivot", "pivot"),
+        ("none", "none"),
+        ("aucune", "none"),
+        ("II", "II"),
+    ],
+)
 def test_a_choice_is_known_by_what_stands_before_its_explanation(text, key):
     choices = {
         "iso": ("isostatique, tout se calcule", "isostatic, all is known"),
@@ -125,9 +168,14 @@ def test_a_choice_is_known_by_what_stands_before_its_explanation(text, key):
 
 
 FORMULAS = {
-    "one": ("$w = 1$",), "minus_one": ("$w = -1$",), "zero": ("$w = 0$",), "two": ("$w = 2$",),
-    "six": ("$h = N_s - 6$",), "rank": ("$h = N_s - r_s$",), "turn": ("une rotation", "rotation"),
-}  # fmt: skip
+    "one": ("$w = 1$",),
+    "minus_one": ("$w = -1$",),
+    "zero": ("$w = 0$",),
+    "two": ("$w = 2$",),
+    "six": ("$h = N_s - 6$",),
+    "rank": ("$h = N_s - r_s$",),
+    "turn": ("une rotation", "rotation"),
+}
 
 
 @each_row(
@@ -194,25 +242,60 @@ JOINTS = {
 @each_row(
     ("text", "key"),
     [
-        *[(s, "revolute") for s in ("pivot", "un pivot", "Pivot.", "liaison pivot", "revolute", "a revolute joint", "« pivot »")],
+        *[
+            (s, "revolute")
+            for s in (
+                "pivot",
+                "un pivot",
+                "Pivot.",
+                "liaison pivot",
+                "revolute",
+                "a revolute joint",
+                "« pivot »",
+            )
+        ],
         *[(s, "cylindrical") for s in ("pivot glissant", "un pivot glissant", "cylindrical")],
-        *[(s, "double-rocker") for s in ("double balancier", "un double balancier", "Double balancier dont la bielle")],
+        *[
+            (s, "double-rocker")
+            for s in ("double balancier", "un double balancier", "Double balancier dont la bielle")
+        ],
         *[(s, "limit") for s in ("cas limite", "un cas limite", "cas limite de la loi")],
         ("balancier-manivelle", "rocker-crank"),
         ("même point pièces différentes", "bodies"),
-        *[(s, "oscillates") for s in ("oscille (r2 < r1)", "il oscille (r2 < r1)", "&laquo; oscille &raquo;")],
+        *[
+            (s, "oscillates")
+            for s in ("oscille (r2 < r1)", "il oscille (r2 < r1)", "&laquo; oscille &raquo;")
+        ],
         ("fait un tour complet (r2 > r1)", "rotates"),
     ],
-)  # fmt: skip
+)
 def test_a_choice_is_known_by_what_tells_it_from_all_others(text, key):
     assert read_choice(text, JOINTS).values == (key,)
 
 
 @each_row(
     "text",
-    ["liaison", "glissant", "balancier", "double", "un double", "manivelle", "une manivelle", "no", "joint", "cas", "même", "même point pièces",
-     "oscille (puis fait un tour complet)", "oscille (pivot)", "limite", "tour complet", "double balancier qui tourne", "de la loi"],
-)  # fmt: skip
+    [
+        "liaison",
+        "glissant",
+        "balancier",
+        "double",
+        "un double",
+        "manivelle",
+        "une manivelle",
+        "no",
+        "joint",
+        "cas",
+        "même",
+        "même point pièces",
+        "oscille (puis fait un tour complet)",
+        "oscille (pivot)",
+        "limite",
+        "tour complet",
+        "double balancier qui tourne",
+        "de la loi",
+    ],
+)
 def test_a_piece_that_tells_too_little_is_no_choice(text):
     values = read_choice(text, JOINTS).values
     assert values == () or (text, values) == ("même point pièces", ("bodies",))

@@ -11,9 +11,36 @@ from coursework.parsing.graphs import graph_of, read_graph
 LONGEST = 4000  #: characters of an answer
 GRAPH = graph_of("1-2 revolute, 2-3 revolute")
 PIECES = (
-    "\n", "\\\\", " ", "\t", "1", "1 ", "1\n", "1:", "1)", ";", "; ", "-", "=", "=-", "<=", "(", "(1,2,a ", "joint ", "l", "l1:",
-    "revolut ", "1-2 x 9;", "'a' ", "'", '"', "_", "~", "a", "P",
-)  # fmt: skip
+    "\n",
+    "\\\\",
+    " ",
+    "\t",
+    "1",
+    "1 ",
+    "1\n",
+    "1:",
+    "1)",
+    ";",
+    "; ",
+    "-",
+    "=",
+    "=-",
+    "<=",
+    "(",
+    "(1,2,a ",
+    "joint ",
+    "l",
+    "l1:",
+    "revolut ",
+    "1-2 x 9;",
+    "'a' ",
+    "'",
+    '"',
+    "_",
+    "~",
+    "a",
+    "P",
+)
 
 
 @each_row("piece", PIECES)
@@ -67,10 +94,29 @@ def variant():
     return open_course()["slotted_mechanism"].variant(1, "en")
 
 
-@each_row("text", [
-        "9**9**9**9", "9^9^9^9^9", "(" * LONGEST, "(" * 5000 + "1" + ")" * 5000, "1" + "0" * 5000, "1e" + "9" * 300, "2^-(2^(9^9))", "1 m^999999999",
-        "1 " + "m*" * 200, "sqrt(" * 90, "cos " * 120, "1" + "+1" * 240, "-" * 499 + "1", "\\frac{" * 80, "1/" * 249 + "1", "((((", "[" * 499, "7 " * 249,
-    ])  # fmt: skip
+@each_row(
+    "text",
+    [
+        "9**9**9**9",
+        "9^9^9^9^9",
+        "(" * LONGEST,
+        "(" * 5000 + "1" + ")" * 5000,
+        "1" + "0" * 5000,
+        "1e" + "9" * 300,
+        "2^-(2^(9^9))",
+        "1 m^999999999",
+        "1 " + "m*" * 200,
+        "sqrt(" * 90,
+        "cos " * 120,
+        "1" + "+1" * 240,
+        "-" * 499 + "1",
+        "\\frac{" * 80,
+        "1/" * 249 + "1",
+        "((((",
+        "[" * 499,
+        "7 " * 249,
+    ],
+)
 def test_a_formula_that_would_never_end_is_refused(variant, text):
     for part in variant.parts:
         assert variant.grade({part.id: text})[part.id].verdict != "correct"

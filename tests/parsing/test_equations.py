@@ -23,9 +23,18 @@ def test_an_equation_is_read_as_written():
 
 @each_row(
     ("text", "code"),
-    [("r1 + r2", "no_equals_sign"), ("r1 === r2", "two_equals_signs"), ("r1 = = r2", "two_equals_signs"), ("r1 = r2 = r3", "two_equals_signs"), ("r1 = r9", "unknown_symbol"),
-     ("r1 = ", "not_a_number"), (5, "no_equals_sign"), (True, "not_a_number"), ("r1 = 9^9^9", "too_complex")],
-)  # fmt: skip
+    [
+        ("r1 + r2", "no_equals_sign"),
+        ("r1 === r2", "two_equals_signs"),
+        ("r1 = = r2", "two_equals_signs"),
+        ("r1 = r2 = r3", "two_equals_signs"),
+        ("r1 = r9", "unknown_symbol"),
+        ("r1 = ", "not_a_number"),
+        (5, "no_equals_sign"),
+        (True, "not_a_number"),
+        ("r1 = 9^9^9", "too_complex"),
+    ],
+)
 def test_what_is_no_equation_says_why(text, code):
     reading = read_equation(text, NAMES)
     assert (reading.status, reading.code, reading.text) == ("unreadable", code, str(text))

@@ -16,9 +16,22 @@ from coursework.parsing.expressions import parse_expression
 from coursework.parsing.vocabulary import Unreadable
 
 NAMES = (
-    "r1", "r2", "r3", "r4", "theta2", "theta3", "theta4",
-    "theta3_open", "psi_dot", "r1_dot", "r6_ddot", "R", "r", "omega2", "alpha2",
-)  # fmt: skip
+    "r1",
+    "r2",
+    "r3",
+    "r4",
+    "theta2",
+    "theta3",
+    "theta4",
+    "theta3_open",
+    "psi_dot",
+    "r1_dot",
+    "r6_ddot",
+    "R",
+    "r",
+    "omega2",
+    "alpha2",
+)
 
 NUMBERS = [
     ("2π/3", 2 * math.pi / 3),
@@ -99,15 +112,19 @@ def test_a_symbol_is_known_by_every_spelling(spelling, name):
         ("r2 cos 2θ2", lambda v: v["r2"] * np.cos(2 * v["theta2"])),
         ("cos2θ2", lambda v: np.cos(2 * v["theta2"])),
         ("sin θ2 cos θ3", lambda v: np.sin(v["theta2"]) * np.cos(v["theta3"])),
-        ("r2 sin(θ2−θ4)/(r3 sin(θ4−θ3))", lambda v: v["r2"] * np.sin(v["theta2"] - v["theta4"])
-         / (v["r3"] * np.sin(v["theta4"] - v["theta3"]))),
+        (
+            "r2 sin(θ2−θ4)/(r3 sin(θ4−θ3))",
+            lambda v: (
+                v["r2"] * np.sin(v["theta2"] - v["theta4"]) / (v["r3"] * np.sin(v["theta4"] - v["theta3"]))
+            ),
+        ),
         ("r2 e^(i theta2)", lambda v: v["r2"] * np.exp(1j * v["theta2"])),
         ("r_2 e^{i\\theta_2}", lambda v: v["r2"] * np.exp(1j * v["theta2"])),
         ("\\frac{R}{2 r} \\dot\\psi", lambda v: v["R"] / (2 * v["r"]) * v["psi_dot"]),
         ("Rsin(theta2)", lambda v: v["R"] * np.sin(v["theta2"])),
         ("r1²+2r1 r2", lambda v: v["r1"] ** 2 + 2 * v["r1"] * v["r2"]),
     ],
-)  # fmt: skip
+)
 def test_side_by_side_means_times(text, meaning):
     values = {name: np.linspace(0.4 + k / 7, 2.0 + k / 10, 5) for k, name in enumerate(NAMES)}
     np.testing.assert_allclose(parse_expression(text, NAMES).evaluate(values), meaning(values), rtol=1e-13)
@@ -116,8 +133,12 @@ def test_side_by_side_means_times(text, meaning):
 def test_capitals_tell_names_apart_where_both_are_known_and_letters_always():
     names = ("R", "r", "r2", "R2", "xC")
     assert [parse_expression(s, names).variables for s in ("R2", "r2", "R", "r", "XC")] == [
-        {"R2"}, {"r2"}, {"R"}, {"r"}, {"xC"},
-    ]  # fmt: skip
+        {"R2"},
+        {"r2"},
+        {"R"},
+        {"r"},
+        {"xC"},
+    ]
     for text, known in (
         ("R", ("r",)),
         ("rb", ("rA",)),
@@ -269,9 +290,17 @@ def test_an_equation_has_one_equals_sign(text, code):
 
 
 SYMBOLS = {
-    "r1": "r_1", "r2": "r_2", "r3": "r_3", "r4": "r_4", "R": "R", "r": "r",
-    "theta2": r"\theta_2", "theta3": r"\theta_3", "theta4": r"\theta_4", "psi_dot": r"\dot\psi",
-}  # fmt: skip
+    "r1": "r_1",
+    "r2": "r_2",
+    "r3": "r_3",
+    "r4": "r_4",
+    "R": "R",
+    "r": "r",
+    "theta2": r"\theta_2",
+    "theta3": r"\theta_3",
+    "theta4": r"\theta_4",
+    "psi_dot": r"\dot\psi",
+}
 
 
 @each_row(

@@ -1,4 +1,5 @@
-"""No huge number is near a reference, a column of answers is marked as each alone, and no number stops the reading."""
+"""No huge number is near a reference, a column of answers is marked as each alone, and no number stops the
+reading."""
 
 from __future__ import annotations
 
@@ -198,8 +199,22 @@ def test_a_complex_number_too_large_for_a_float_is_far():
     assert kind_of("complex").distance(part_of("complex"), complex(1.7e308, 1.7e308), 3 + 4j) > 1
 
 
-HUGE_VALUES = [10**5000, -(10**5000), 10**309, Fraction(10**5000), Fraction(10**5000, 3), [10**5000], [10**5000, 1], (10**5000, 10**5000),
-               np.array([10**400], dtype=object), {"a": 10**5000}, complex(1e308, 1e308), 1e308, float("inf"), {10**5000}]  # fmt: skip
+HUGE_VALUES = [
+    10**5000,
+    -(10**5000),
+    10**309,
+    Fraction(10**5000),
+    Fraction(10**5000, 3),
+    [10**5000],
+    [10**5000, 1],
+    (10**5000, 10**5000),
+    np.array([10**400], dtype=object),
+    {"a": 10**5000},
+    complex(1e308, 1e308),
+    1e308,
+    float("inf"),
+    {10**5000},
+]
 
 
 @pytest.mark.parametrize("name", COURSE.names)

@@ -1,4 +1,5 @@
-"""On a sheet with letters a choice is read by letter, place, words, and a tick; what says two things is not read."""
+"""On a sheet with letters a choice is read by letter, place, words, and a tick; what says two things is not
+read."""
 
 from sweeps import whole_course
 from tables import each_row
@@ -31,13 +32,56 @@ def lettered(choices):
 
 @each_row(
     "text",
-    ["b", "B", "(b)", "b)", "b.", "[b]", " b ", "réponse b", "Réponse : b", "answer B", "option b)", "la réponse b", "c'est la b",
-     "2", "2.", "(2)", "2)", 2, "2.0", "n°2", "réponse 2", "answer 2",
-     "b (it oscillates)", "b) oscille", "b: oscille", "b - oscille", "b oscille", "oscille (b)", "oscille, b", "b (r2 < r1)",
-     "oscille", "it oscillates", "oscillates", "2) oscille", "1) oscille",
-     "☐ a ☒ b ☐ c", "[ ] a [x] b", "[x] b", "b [x]", "a [ ] b [x] c [ ]", "☐ a) fait un tour complet ☒ b) oscille", "a b[x] c",
-     "a [x]b c", "a\nb [x]\nc", "[ ] a\n[X] b\n[ ] c", "( ) a) fait un tour complet (x) b) oscille", "✓ b"],
-)  # fmt: skip
+    [
+        "b",
+        "B",
+        "(b)",
+        "b)",
+        "b.",
+        "[b]",
+        " b ",
+        "réponse b",
+        "Réponse : b",
+        "answer B",
+        "option b)",
+        "la réponse b",
+        "c'est la b",
+        "2",
+        "2.",
+        "(2)",
+        "2)",
+        2,
+        "2.0",
+        "n°2",
+        "réponse 2",
+        "answer 2",
+        "b (it oscillates)",
+        "b) oscille",
+        "b: oscille",
+        "b - oscille",
+        "b oscille",
+        "oscille (b)",
+        "oscille, b",
+        "b (r2 < r1)",
+        "oscille",
+        "it oscillates",
+        "oscillates",
+        "2) oscille",
+        "1) oscille",
+        "☐ a ☒ b ☐ c",
+        "[ ] a [x] b",
+        "[x] b",
+        "b [x]",
+        "a [ ] b [x] c [ ]",
+        "☐ a) fait un tour complet ☒ b) oscille",
+        "a b[x] c",
+        "a [x]b c",
+        "a\nb [x]\nc",
+        "[ ] a\n[X] b\n[ ] c",
+        "( ) a) fait un tour complet (x) b) oscille",
+        "✓ b",
+    ],
+)
 def test_letter_place_words_and_tick_are_read(text):
     assert read_choice(text, GUIDE, LETTERS).values == ("oscillates",)
 
@@ -45,12 +89,18 @@ def test_letter_place_words_and_tick_are_read(text):
 @each_row(
     ("text", "code"),
     [
-        *[(s, "two_values") for s in ("a) oscille", "a oscille", "a (it oscillates)", "oscille (a)", "b, c", "b c")],
+        *[
+            (s, "two_values")
+            for s in ("a) oscille", "a oscille", "a (it oscillates)", "oscille (a)", "b, c", "b c")
+        ],
         *[(s, "two_values") for s in ("☒ a ☒ b", "[x] a [x] b [ ] c", "[x] b c")],
-        *[(s, "not_a_choice") for s in ("d", "0", "4", "II", "b because", "b ou c", "aa", "a [x] b", "a b [x] c", "[x]")],
+        *[
+            (s, "not_a_choice")
+            for s in ("d", "0", "4", "II", "b because", "b ou c", "aa", "a [x] b", "a b [x] c", "[x]")
+        ],
         *[(s, "not_a_choice") for s in ("☐ a ☐ b", "b (none, r2 < r1)", "-2", "2,5", True, 2.0)],
     ],
-)  # fmt: skip
+)
 def test_what_says_two_things_or_none_waits_for_a_person(text, code):
     reading = read_choice(text, GUIDE, LETTERS)
     assert (reading.status, reading.code, reading.values) == ("unreadable", code, ())
@@ -76,9 +126,18 @@ def test_a_number_that_labels_begin_with_keeps_its_meaning(choices, text, key):
 
 @each_row(
     ("choices", "text"),
-    [(CLASSES, "1"), (CLASSES, "4"), (COUNTED, "2"), (BARS, "2"), (BARS, "1"), (BARS, "3"), (CLASSES, "b) II"), (NATURES, "a) rotation"),
-     (NATURES, "a: rotation")],
-)  # fmt: skip
+    [
+        (CLASSES, "1"),
+        (CLASSES, "4"),
+        (COUNTED, "2"),
+        (BARS, "2"),
+        (BARS, "1"),
+        (BARS, "3"),
+        (CLASSES, "b) II"),
+        (NATURES, "a) rotation"),
+        (NATURES, "a: rotation"),
+    ],
+)
 def test_a_number_or_a_letter_that_could_be_two_things_is_not_read(choices, text):
     assert read_choice(text, choices, lettered(choices)).status == "unreadable"
 
@@ -110,7 +169,8 @@ def test_on_a_sheet_without_letters_none_is_read(text):
 
 @whole_course
 def test_whatever_was_read_without_letters_is_read_alike_with_them_or_waits():
-    """Over the course, in both languages: every code, label, head and beginning; letters never make another of it."""
+    """Over the course, in both languages: every code, label, head and beginning; letters never make another
+    of it."""
     import coursework
     from coursework.parsing.labels import head
 

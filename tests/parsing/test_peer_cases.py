@@ -48,10 +48,8 @@ DIFFERENCES = {
         "read": (142,),
     },
     "Infinity is not a value: unreadable rather than wrong": {"unreadable": (128,)},
-    "An answer equal to the reference is right, whatever the unit of the tolerance": {
-        "correct": (180,)
-    },
-}  # fmt: skip
+    "An answer equal to the reference is right, whatever the unit of the tolerance": {"correct": (180,)},
+}
 
 _MEASURE = re.compile(r"(?P<number>[+-]?[0-9.]+(?:[eE][+-]?[0-9]+)?(?:/[0-9]+)?)\s*\*?\s*(?P<unit>[^(].*)?")
 

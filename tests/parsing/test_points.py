@@ -11,20 +11,42 @@ from coursework.parsing.points import read_point
 @each_row(
     ("text", "values"),
     [
-        *[(s, ((12.3, 4.5),)) for s in (
-            "(12,3 ; 4,5) mm", "12.3, 4.5", "12,3 ; 4,5", "12,3;4,5 mm", "(12.3, 4.5)", "[12.3 4.5]",
-            "12,3 4,5",
-            "12,3, 4,5", "12,3,4,5", "12.3,4.5", "12,3 mm ; 4,5 mm", "1.23 cm, 0.45 cm", "(1,23 ; 0,45) cm",
-            "A = (12.3 ; 4.5)", "A(12,3 ; 4,5)", "x = 12.3 ; y = 4.5", "x=12,3 mm; y=4,5 mm", "{12.3 ; 4.5}",
-            "12,3 mm ; 0,45 cm", "1.23, 0.45 cm", f"(12,3{NBSP};{NBSP}4,5){NARROW}mm", "24.6/2 ; 4.5",
-            "(12.3 | 4.5)",
-            [12.3, 4.5], ["12,3", "4,5"], (12.3, "4.5 mm"),
-        )],
+        *[
+            (s, ((12.3, 4.5),))
+            for s in (
+                "(12,3 ; 4,5) mm",
+                "12.3, 4.5",
+                "12,3 ; 4,5",
+                "12,3;4,5 mm",
+                "(12.3, 4.5)",
+                "[12.3 4.5]",
+                "12,3 4,5",
+                "12,3, 4,5",
+                "12,3,4,5",
+                "12.3,4.5",
+                "12,3 mm ; 4,5 mm",
+                "1.23 cm, 0.45 cm",
+                "(1,23 ; 0,45) cm",
+                "A = (12.3 ; 4.5)",
+                "A(12,3 ; 4,5)",
+                "x = 12.3 ; y = 4.5",
+                "x=12,3 mm; y=4,5 mm",
+                "{12.3 ; 4.5}",
+                "12,3 mm ; 0,45 cm",
+                "1.23, 0.45 cm",
+                f"(12,3{NBSP};{NBSP}4,5){NARROW}mm",
+                "24.6/2 ; 4.5",
+                "(12.3 | 4.5)",
+                [12.3, 4.5],
+                ["12,3", "4,5"],
+                (12.3, "4.5 mm"),
+            )
+        ],
         ("1,5", ((1, 5),)),
         ("1,234 ; 5", ((1.234, 5), (1234, 5))),
         ("1 234,5 ; −2", ((1234.5, -2),)),
     ],
-)  # fmt: skip
+)
 def test_a_point_is_read_however_it_is_written(text, values):
     reading = read_point(text, "mm", 2)
     assert reading.status == "read", reading
@@ -39,11 +61,26 @@ def test_a_direction_of_three_coordinates_is_read(text):
 @each_row(
     ("text", "value"),
     [
-        *[(s, (0, 1, 0)) for s in ("y", "Y", "\\vec y", "\\vec{y}", "$\\vec{y}$", "y\u20d7", "vec y", "axe y", "l'axe y", "y axis", "y-axis")],
+        *[
+            (s, (0, 1, 0))
+            for s in (
+                "y",
+                "Y",
+                "\\vec y",
+                "\\vec{y}",
+                "$\\vec{y}$",
+                "y\u20d7",
+                "vec y",
+                "axe y",
+                "l'axe y",
+                "y axis",
+                "y-axis",
+            )
+        ],
         *[(s, (0, 0, -1)) for s in ("-z", "−z", "-\\vec z", "- \\overrightarrow{z}")],
         ("x", (1, 0, 0)),
     ],
-)  # fmt: skip
+)
 def test_an_axis_is_a_direction(text, value):
     reading = read_point(text, "1", 3)
     assert (reading.values, reading.read_as) == ((value,), (f"({value[0]:g}; {value[1]:g}; {value[2]:g})",))
@@ -127,13 +164,27 @@ def test_a_point_says_whether_a_unit_is_written():
 @each_row(
     ("text", "verdict"),
     [
-        *[(s, "correct") for s in (
-            "(R+2r, 0, 0)", "R + 2*r ; 0 ; 0", "[R+2r 0 0]", "P(R+2r, 0, 0)_a", "(R+2r, 0, 0) mm", "(R+2r) x_a",
-            "O_1P = (R+2r) \\vec{x}_a", "(R+r) x_a - r z", ["R+2r", 0, "0"], "(R+10, 0, 0)",
-        )],
-        ("(R, 0, 0)", "wrong"), ("(R+2r, 0)", "unreadable"), ("(q, 0, 0)", "unreadable"), ("(R/0, 0, 0)", "unreadable"),
+        *[
+            (s, "correct")
+            for s in (
+                "(R+2r, 0, 0)",
+                "R + 2*r ; 0 ; 0",
+                "[R+2r 0 0]",
+                "P(R+2r, 0, 0)_a",
+                "(R+2r, 0, 0) mm",
+                "(R+2r) x_a",
+                "O_1P = (R+2r) \\vec{x}_a",
+                "(R+r) x_a - r z",
+                ["R+2r", 0, "0"],
+                "(R+10, 0, 0)",
+            )
+        ],
+        ("(R, 0, 0)", "wrong"),
+        ("(R+2r, 0)", "unreadable"),
+        ("(q, 0, 0)", "unreadable"),
+        ("(R/0, 0, 0)", "unreadable"),
     ],
-)  # fmt: skip
+)
 def test_a_vector_of_formulas_is_worked_out(text, verdict):
     variant = coursework.open_course()["ball_reducer"].variant(0, lang="en")
     assert variant.given["r"] == 5  # mm, for R + 10

@@ -138,10 +138,33 @@ def test_an_unknown_unit_names_its_piece_and_the_nearest(text, piece, offer):
 
 @each_row(
     "text",
-    ["", " ", "frogs", "mm//s", "mm/", "/mm", "(mm", "mm)", "mm 3", "5 mm", "mm^99", "mm^", "m^1.5", "()",
-    "mm()",
-     "Tm9" * 9, "(" * 30 + "m" + ")" * 30, "m" * 5000, "^2", "mm^-", "é", "° 1-1 °", "m 1", "° 1 °"],
-)  # fmt: skip
+    [
+        "",
+        " ",
+        "frogs",
+        "mm//s",
+        "mm/",
+        "/mm",
+        "(mm",
+        "mm)",
+        "mm 3",
+        "5 mm",
+        "mm^99",
+        "mm^",
+        "m^1.5",
+        "()",
+        "mm()",
+        "Tm9" * 9,
+        "(" * 30 + "m" + ")" * 30,
+        "m" * 5000,
+        "^2",
+        "mm^-",
+        "é",
+        "° 1-1 °",
+        "m 1",
+        "° 1 °",
+    ],
+)
 def test_what_is_no_unit_is_refused(text):
     assert find_unit(text) is None
     with pytest.raises(WrongUnit):

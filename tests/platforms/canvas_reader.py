@@ -1,4 +1,5 @@
-"""A reader of Canvas packages that shares nothing with the writer, and a judge by the rules that Canvas's own sources state."""
+"""A reader of Canvas packages that shares nothing with the writer, and a judge by the rules that Canvas's own
+sources state."""
 
 from __future__ import annotations
 
@@ -73,7 +74,8 @@ def _condition(condition):
 
 
 def takes_number(question, typed):
-    """Whether Canvas takes what is typed: the page keeps four decimals, the importer an exact value and a margin."""
+    """Whether Canvas takes what is typed: the page keeps four decimals, the importer an exact value and a
+    margin."""
     kept = Decimal(f"{float(typed):.4f}")
     for one in question["conditions"]:
         exact = Decimal(one["equal"][0])

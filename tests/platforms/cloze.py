@@ -1,4 +1,5 @@
-"""Reads the question texts of Moodle's XML by the grammar that its documentation states, independently of what writes them."""
+"""Reads the question texts of Moodle's XML by the grammar that its documentation states, independently of
+what writes them."""
 
 from __future__ import annotations
 
@@ -42,7 +43,8 @@ def _closing(text, start):
 
 
 def _split(text, mark, most=0):
-    """PagePieces between marks, of which none follows a backslash; a hash after an ampersand is of an entity."""
+    """PagePieces between marks, of which none follows a backslash; a hash after an ampersand is of an
+    entity."""
     return re.split(rf"(?<![\\&]){mark}" if mark == "#" else rf"(?<!\\){mark}", text, maxsplit=most)
 
 

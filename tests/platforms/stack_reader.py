@@ -1,4 +1,5 @@
-"""A reader of STACK's questions that shares nothing with the writer, and a judge that runs their trees in Python."""
+"""A reader of STACK's questions that shares nothing with the writer, and a judge that runs their trees in
+Python."""
 
 from __future__ import annotations
 
@@ -91,17 +92,29 @@ def _space(question, answers):
     space = {
         "co_number": lambda x, u: x if isinstance(x, (int, float)) else False,
         "co_in": lambda v, a, b: v is not False and a <= v <= b,
-        "co_turned": lambda v, a, b, t: v is not False
-        and abs(v - (a + b) / 2 - t * round((v - (a + b) / 2) / t)) <= (b - a) / 2,
+        "co_turned": lambda v, a, b, t: (
+            v is not False and abs(v - (a + b) / 2 - t * round((v - (a + b) / 2) / t)) <= (b - a) / 2
+        ),
         "co_tried": lambda v, r: abs(v) <= 100 * abs(r) and 100 * abs(v) >= abs(r),
         "numberp": lambda v: v is not False,
         "_is": bool,
         "float": lambda z: z if z is False else complex(z).real,
-        "sin": cmath.sin, "cos": cmath.cos, "tan": cmath.tan, "asin": cmath.asin, "acos": cmath.acos,
-        "atan": cmath.atan, "sqrt": cmath.sqrt, "exp": cmath.exp, "cabs": abs, "carg": cmath.phase,
-        "realpart": lambda z: complex(z).real, "imagpart": lambda z: complex(z).imag,
-        "atan2": lambda y, x: math.atan2(complex(y).real, complex(x).real), "PI": math.pi, "I": 1j,
-    }  # fmt: skip
+        "sin": cmath.sin,
+        "cos": cmath.cos,
+        "tan": cmath.tan,
+        "asin": cmath.asin,
+        "acos": cmath.acos,
+        "atan": cmath.atan,
+        "sqrt": cmath.sqrt,
+        "exp": cmath.exp,
+        "cabs": abs,
+        "carg": cmath.phase,
+        "realpart": lambda z: complex(z).real,
+        "imagpart": lambda z: complex(z).imag,
+        "atan2": lambda y, x: math.atan2(complex(y).real, complex(x).real),
+        "PI": math.pi,
+        "I": 1j,
+    }
     for line in _statements(question["variables"]):
         if found := re.fullmatch(r"(co_r\d+): \[(.*)\]", line):
             space[found[1]] = FromOne(map(float, re.sub(r"[()]", "", found[2]).split(",")))

@@ -199,7 +199,8 @@ KNOWN = [({"d": 4}, {"radius": 0.002})]
 
 @pytest.fixture(scope="module")
 def bolts(tmp_path_factory):
-    """A pool of a course whose answers are so small that four decimals do not say them, and whose words are hostile."""
+    """A pool of a course whose answers are so small that four decimals do not say them, and whose words are
+    hostile."""
     folder = tmp_path_factory.mktemp("bolts") / "c"
     new_course(folder)
     (folder / "exercises" / "bolt.py").write_text(BOLT)

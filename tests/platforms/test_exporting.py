@@ -67,7 +67,8 @@ def test_students_are_kept_for_the_way_back():
 
 @pytest.mark.parametrize("name", COURSE.names)
 def test_variants_of_a_pool_are_worth_the_same(name):
-    """Nobody's paper is longer: where most ask the same, all do; else they are worth the same, in as many questions."""
+    """Nobody's paper is longer: where most ask the same, all do; else they are worth the same, in as many
+    questions."""
     drawn = of_exercises(COURSE, [name], 4, 0, ["en"], None)
     (variants,) = drawn.variants
     assert len({(sum(p.points for p in v.parts), len(v.parts)) for v in variants}) == 1

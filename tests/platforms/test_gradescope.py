@@ -1,4 +1,5 @@
-"""Gradescope's autograder as Gradescope runs it: the zip unpacked into its folders, a submission, ``run_autograder`` as a process.
+"""Gradescope's autograder as Gradescope runs it: the zip unpacked into its folders, a submission,
+``run_autograder`` as a process.
 
 Gradescope itself cannot be had; what it takes is held to its published form of ``results.json``.
 """

@@ -1,4 +1,5 @@
-"""Nothing is dropped in silence: what our marking does with a part, each platform keeps, or has a sentence for what it does instead."""
+"""Nothing is dropped in silence: what our marking does with a part, each platform keeps, or has a sentence
+for what it does instead."""
 
 from __future__ import annotations
 
@@ -59,7 +60,8 @@ def pools():
 
 @every_exercise
 def test_moodle_lists_what_it_does_not_do(pools, name):
-    """By what the parts are, and not by what is posed: collected parts, commas, units, right methods from a wrong answer."""
+    """By what the parts are, and not by what is posed: collected parts, commas, units, right methods from a
+    wrong answer."""
     pool = pools(name)
     listed = {(loss.part, loss.feature) for loss in losses(pool, "moodle")}
     given = item(COURSE[name].variant(int(pool.items[0].identifier.split(".")[-2]), "en"), pool.name)

@@ -1,4 +1,5 @@
-"""What is written for Moodle says what the pool says, by the grammar that Moodle documents; read by a parser of its own."""
+"""What is written for Moodle says what the pool says, by the grammar that Moodle documents; read by a parser
+of its own."""
 
 from __future__ import annotations
 
@@ -70,7 +71,8 @@ def questions(data):
 @every_language
 @every_exercise
 def test_every_question_has_its_box(written, name, lang):
-    """Type, weight, intervals, shares: as posed; what is collected weighs nothing and takes whatever is written."""
+    """Type, weight, intervals, shares: as posed; what is collected weighs nothing and takes whatever is
+    written."""
     given, data = written(name, lang)
     category, question = questions(data)
     assert category[1].startswith("$course$/top/")
@@ -147,7 +149,8 @@ def filtered(text, lang):
 
 
 def check_two_languages(names, tmp_path):
-    """What a student reads in a quiz of two languages is what a quiz of their language says, and the boxes judge alike."""
+    """What a student reads in a quiz of two languages is what a quiz of their language says, and the boxes
+    judge alike."""
     drawn = of_exercises(COURSE, names, 1, 0, LANGS, None)
     both = quiz(*(drawn.pool(lang, PLATFORM) for lang in LANGS))
     found = [one for one in questions(both) if one[0] != "category"]
@@ -205,7 +208,8 @@ def test_files_are_small_and_hold_every_question_once(monkeypatch):
 
 
 def test_texts_come_in_one_piece():
-    """Moodle's reader drops a piece of white space between two entities: a text that holds tags is one section."""
+    """Moodle's reader drops a piece of white space between two entities: a text that holds tags is one
+    section."""
     data = written_of(of_exercises(COURSE, ["slotted_mechanism"], 1, 0, ("fr",), None), "fr")
     outside, inside = [], []
     reader = expat.ParserCreate()
@@ -218,8 +222,23 @@ def test_texts_come_in_one_piece():
 
 @each_row(
     "text",
-    ["}", "~", "#", '"', "&amp;", "=", "%50%", "\\", "a\\}b", "a\\#b", "x~%100%y#z}", "&amp;#35;", "{1:SA:=x}", "5 &lt; 6"],
-)  # fmt: skip
+    [
+        "}",
+        "~",
+        "#",
+        '"',
+        "&amp;",
+        "=",
+        "%50%",
+        "\\",
+        "a\\}b",
+        "a\\#b",
+        "x~%100%y#z}",
+        "&amp;#35;",
+        "{1:SA:=x}",
+        "5 &lt; 6",
+    ],
+)
 def test_what_stands_in_an_answer_comes_back_as_it_was(text):
     """HTML is compared as a browser shows it: a backslash may be written by its number."""
     (box,), _ = boxes_of(f"{{1:MULTICHOICE_V:={escaped('a' + text)}~b{escaped(text)}#{escaped(text)}}}")
@@ -234,7 +253,12 @@ def test_hostile_words_of_a_course_open_no_box(small_course):
     """Braces, tildes, hashes, slashes of statement, options and titles are what students read."""
     for lang in LANGS:
         path = small_course / "exercises" / f"crank_pin.{lang}.md.j2"
-        path.write_text(f"{{% raw %}}{path.read_text('utf-8')}{{% endraw %}}".replace("\n\n", f"\n\n{_markdown(HOSTILE)} ", 1), "utf-8")  # fmt: skip
+        path.write_text(
+            f"{{% raw %}}{path.read_text('utf-8')}{{% endraw %}}".replace(
+                "\n\n", f"\n\n{_markdown(HOSTILE)} ", 1
+            ),
+            "utf-8",
+        )
     course = coursework.open_course(small_course)
     drawn = of_exercises(course, ["crank_pin"], 2, 0, LANGS, None)
     category, *found = questions(written_of(drawn, "en", title="Week 3/4"))

@@ -1,4 +1,5 @@
-"""What a platform is told of a question is what our marking gives, on a sheet that is blank but for the answer."""
+"""What a platform is told of a question is what our marking gives, on a sheet that is blank but for the
+answer."""
 
 from __future__ import annotations
 
@@ -159,7 +160,8 @@ def test_several_right_ones_share_the_points(tmp_path):
 @pytest.mark.parametrize("lang", ["en", "fr"])
 @every_exercise
 def test_options_are_read_as_reports_make_plain_text_of_them(name, lang):
-    """Letter and words as a platform's report has them, formulas without their layout: the same as the letter alone."""
+    """Letter and words as a platform's report has them, formulas without their layout: the same as the letter
+    alone."""
     variant = COURSE[name].variant(3, lang)
     pieces = PagePieces(renderer_of(COURSE.folder).template_folders, lang)
     for posed, part in zip(item(variant, "pool").questions, variant.parts, strict=True):
@@ -171,8 +173,19 @@ def test_options_are_read_as_reports_make_plain_text_of_them(name, lang):
 def test_a_line_is_the_same_whether_its_digits_were_blank_or_not():
     pieces = PagePieces(renderer_of(COURSE.folder).template_folders, "fr")
     lines = (
-        "$r_2$ : −193,70 mm est 2 fois trop grand.", "1. 12 mm", "a\n2) b", "`x1`", "&#49;2", "[1](http://a.b/2)", "$$x_1$$ 3",
-        "cost 5$, or 6", r"5 \$ and 6 $x_1$ 7", "**faux** (0,5/2) 12 % de 3,5 rad/s ; 7 !", "\N{MATHEMATICAL MONOSPACE DIGIT ZERO} 1", "# 4", "<b>5</b>",
-    )  # fmt: skip
+        "$r_2$ : −193,70 mm est 2 fois trop grand.",
+        "1. 12 mm",
+        "a\n2) b",
+        "`x1`",
+        "&#49;2",
+        "[1](http://a.b/2)",
+        "$$x_1$$ 3",
+        "cost 5$, or 6",
+        r"5 \$ and 6 $x_1$ 7",
+        "**faux** (0,5/2) 12 % de 3,5 rad/s ; 7 !",
+        "\N{MATHEMATICAL MONOSPACE DIGIT ZERO} 1",
+        "# 4",
+        "<b>5</b>",
+    )
     for line in lines:
         assert pieces.inline(line) == html_inline(line, "fr"), line

@@ -1,4 +1,5 @@
-"""The QTI packages, read back and played by an evaluator of the specification, agree with our marking; both spellings say the same."""
+"""The QTI packages, read back and played by an evaluator of the specification, agree with our marking; both
+spellings say the same."""
 
 from __future__ import annotations
 
@@ -145,9 +146,13 @@ def test_several_cases_count_each_and_never_below_nothing(tmp_path):
     part = next(one for one in variant.parts if one.id == "true_of_it")
     letter = variant.letters(part)
     for chosen, points in (
-        (["lags", "heats", "stores"], 2), (["lags"], 2 / 3), (["lags", "leads"], 0), (["leads"], 0), ([], 0),
+        (["lags", "heats", "stores"], 2),
+        (["lags"], 2 / 3),
+        (["lags", "leads"], 0),
+        (["leads"], 0),
+        ([], 0),
         (["lags", "heats", "stores", "leads"], 0),
-    ):  # fmt: skip
+    ):
         outcomes = player.outcomes({"RESPONSE_true_of_it": [letter[case] for case in chosen]})
         ours = mark(variant, {"true_of_it": ", ".join(letter[case] for case in chosen)})["true_of_it"]
         assert outcomes["SCORE_true_of_it"] == pytest.approx(points) == pytest.approx(ours.points), chosen
@@ -219,7 +224,8 @@ def test_the_two_spellings_say_the_same(drawn):
 
 
 def _content(element):
-    """Tags, the attributes that both versions have, texts; what wraps feedback in one alone is passed over."""
+    """Tags, the attributes that both versions have, texts; what wraps feedback in one alone is passed
+    over."""
     children = [found for child in element for found in _content(child)]
     if element.tag == "contentBody":
         return children
@@ -284,7 +290,8 @@ def test_numbers_are_plain_decimals_compared_by_their_ends(drawn):
         processing = root.find("responseProcessing")
         tags = {one.tag for one in processing.iter()}
         assert tags <= set(
-            "responseProcessing responseCondition responseIf responseElseIf responseElse isNull and or gte lte match "
+            "responseProcessing responseCondition responseIf responseElseIf responseElse isNull and or "
+            "gte lte match "
             "variable baseValue setOutcomeValue sum mapResponse".split()
         )
         for one in processing.iter("baseValue"):
@@ -344,7 +351,8 @@ def test_points_of_an_assignment_are_those_of_its_items(tmp_path):
     path = tmp_path / "week 3.toml"
     path.write_text(
         'title = "Week 3 & more"\n[[exercises]]\nname = "grashof"\npoints = 6\n'
-        '[[exercises]]\nname = "slotted_mechanism"\nparts = ["rA", "omega4"]\npoints = {rA = 2, omega4 = 3}\n',
+        '[[exercises]]\nname = "slotted_mechanism"\nparts = ["rA", "omega4"]\npoints = {rA = 2, omega4 '
+        "= 3}\n",
         "utf-8",
     )
     drawn = of_assignment(COURSE, read_assignment(path, COURSE), 2, ["en"], Secret.new())

@@ -122,9 +122,18 @@ def the_longer_the_rod_the_more_alike_are_the_accelerations_at_both_ends(course)
 # -- mechanical_advantage_and_dead_points ------------------------------------------------------------------
 
 MACHINE = {
-    "r2": 60.0, "r3": 200.0, "e": 0.0, "alpha2": 0.0, "s3": 0.4, "F": -200.0, "f": 0.1,
-    "m3": 1.2, "J3": 0.004, "m4": 0.8, "J2": 0.002,
-}  # fmt: skip
+    "r2": 60.0,
+    "r3": 200.0,
+    "e": 0.0,
+    "alpha2": 0.0,
+    "s3": 0.4,
+    "F": -200.0,
+    "f": 0.1,
+    "m3": 1.2,
+    "J3": 0.004,
+    "m4": 0.8,
+    "J2": 0.002,
+}
 
 
 def mean_torque(course, *effects, omega2=30.0):

@@ -1,4 +1,5 @@
-"""Every file that is read back is held against its shape: what does not fit is told by file and place, never by a traceback.
+"""Every file that is read back is held against its shape: what does not fit is told by file and place, never
+by a traceback.
 
 The cases are what a fuzz of each reader found; the fuzz itself is among the slow tests.
 """
@@ -28,7 +29,8 @@ DEEP = "[" * 100_000
 
 
 class Class:
-    """A class with an open question that is built, as exercises and as an assignment, marked twice, kept in a database, dumped."""
+    """A class with an open question that is built, as exercises and as an assignment, marked twice, kept in a
+    database, dumped."""
 
     def __init__(self, folder):
         self.folder = folder
@@ -129,12 +131,25 @@ READERS = {
     "issued, of an assignment": ("as/issued.json", lambda coil, folder: coil.grade(folder, folder / "o")),
     "issued, before an assignment": (
         "as/issued.json",
-        lambda coil, folder: coil("build", coil.folder / "a.toml", "--roster", coil.folder / "r.csv", "--formats", "ipynb", "--out", folder),
+        lambda coil, folder: coil(
+            "build",
+            coil.folder / "a.toml",
+            "--roster",
+            coil.folder / "r.csv",
+            "--formats",
+            "ipynb",
+            "--out",
+            folder,
+        ),
     ),
     "issued, before an export": (
-        "b/issued.json", lambda coil, folder: coil("export", "moodle", "coil", "--variants", 2, "--out", folder),
+        "b/issued.json",
+        lambda coil, folder: coil("export", "moodle", "coil", "--variants", 2, "--out", folder),
     ),
-    "issued, into a database": ("b/issued.json", lambda coil, folder: coil.grade(folder, folder / "o", "--db", folder / "x.db")),
+    "issued, into a database": (
+        "b/issued.json",
+        lambda coil, folder: coil.grade(folder, folder / "o", "--db", folder / "x.db"),
+    ),
     "built": ("b/.built.json", build_there),
     "marks": ("b/marks/marks.csv", grade_there),
     "marks, of a report": ("b/marks/marks.csv", lambda coil, folder: coil("report", folder, "--json")),
@@ -142,18 +157,52 @@ READERS = {
     "summary": ("b/marks/summary.csv", grade_there),
     "summary, of a report": ("b/marks/summary.csv", lambda coil, folder: coil("report", folder, "--json")),
     "summary, for a platform": (
-        "b/marks/summary.csv", lambda coil, folder: coil("gradebook", "moodle", folder, "--item", "x", "--out", folder / "x.xml"),
+        "b/marks/summary.csv",
+        lambda coil, folder: coil("gradebook", "moodle", folder, "--item", "x", "--out", folder / "x.xml"),
     ),
     "rejected": ("b/marks/rejected.csv", lambda coil, folder: coil("report", folder, "--json")),
     "accepted": ("b/marks/accepted.csv", grade_there),
     "decisions": ("b/marks/decisions.csv", grade_there),
-    "answers": ("all.csv", lambda coil, folder: coil("grade", folder / "all.csv", "--issued", coil.folder / "b/issued.json", "--no-feedback", "--out", folder / "o")),
-    "sheets": ("sheets.json", lambda coil, folder: coil("grade", folder / "sheets.json", "--issued", coil.folder / "b/issued.json", "--no-feedback", "--out", folder / "o")),
-    "roster": ("r.csv", lambda coil, folder: coil("build", "coil", "--roster", folder / "r.csv", "--formats", "ipynb", "--out", folder / "o")),
-    "assignment": ("a.toml", lambda coil, folder: coil("build", folder / "a.toml", "--formats", "ipynb", "--out", folder / "o")),
+    "answers": (
+        "all.csv",
+        lambda coil, folder: coil(
+            "grade",
+            folder / "all.csv",
+            "--issued",
+            coil.folder / "b/issued.json",
+            "--no-feedback",
+            "--out",
+            folder / "o",
+        ),
+    ),
+    "sheets": (
+        "sheets.json",
+        lambda coil, folder: coil(
+            "grade",
+            folder / "sheets.json",
+            "--issued",
+            coil.folder / "b/issued.json",
+            "--no-feedback",
+            "--out",
+            folder / "o",
+        ),
+    ),
+    "roster": (
+        "r.csv",
+        lambda coil, folder: coil(
+            "build", "coil", "--roster", folder / "r.csv", "--formats", "ipynb", "--out", folder / "o"
+        ),
+    ),
+    "assignment": (
+        "a.toml",
+        lambda coil, folder: coil("build", folder / "a.toml", "--formats", "ipynb", "--out", folder / "o"),
+    ),
     "progress": ("p/progress.json", Class.studied),
-    **{f"dump, {name}": (f"dump/{name}", Class.restored) for name in ("dump.json", "assignment.csv", "variant.csv", "answer.csv", "mark.csv", "person.csv")},
-}  # fmt: skip
+    **{
+        f"dump, {name}": (f"dump/{name}", Class.restored)
+        for name in ("dump.json", "assignment.csv", "variant.csv", "answer.csv", "mark.csv", "person.csv")
+    },
+}
 
 
 def read_damaged(coil, place, name, damage):
@@ -195,22 +244,40 @@ GONE = object()
 RECORD = ("issued", 0, "record")
 PART = (*RECORD, "parts", 0)
 ISSUED = {
-    "a part without id": (changed((*PART, "id"), GONE), "item 1 of 3 is not an issued record: id of a part is a text; found nothing"),
+    "a part without id": (
+        changed((*PART, "id"), GONE),
+        "item 1 of 3 is not an issued record: id of a part is a text; found nothing",
+    ),
     "a part twice": (changed((*PART, "id"), '"I"'), "it has the part 'I' twice"),
     "points that are none": (changed((*PART, "points"), '"2"'), "points of 'Z' are a number above 0"),
-    "a seed of 5000 digits": (changed((*RECORD, "seed"), "9" * 5000), "is not JSON: a number of 5000 digits, 999"),
+    "a seed of 5000 digits": (
+        changed((*RECORD, "seed"), "9" * 5000),
+        "is not JSON: a number of 5000 digits, 999",
+    ),
     "an infinite seed": (changed((*RECORD, "seed"), "1e999"), "is not JSON: a number too great, 1e999"),
-    "a seed that is no number": (changed((*RECORD, "seed"), "NaN"), "is not JSON: a number that is none, NaN"),
-    "a seed that is true": (changed((*RECORD, "seed"), "true"), "seed is a whole number, 0 or more; found True"),
+    "a seed that is no number": (
+        changed((*RECORD, "seed"), "NaN"),
+        "is not JSON: a number that is none, NaN",
+    ),
+    "a seed that is true": (
+        changed((*RECORD, "seed"), "true"),
+        "seed is a whole number, 0 or more; found True",
+    ),
     "a seed below 0": (changed((*RECORD, "seed"), "-1"), "seed is a whole number, 0 or more; found -1"),
     "a record that is a list": (changed(RECORD, "[]"), "it has no record"),
     "no exercise": (changed((*RECORD, "exercise"), GONE), "exercise is a text; found nothing"),
-    "a NUL in a name": (changed(("issued", 0, "student"), r'"A\u0000"'), r"issued[0].student holds a NUL: 'A\x00'"),
-    "half a character in a name": (changed(("issued", 0, "student"), r'"A\ud800"'), "issued[0].student holds half a character"),
+    "a NUL in a name": (
+        changed(("issued", 0, "student"), r'"A\u0000"'),
+        r"issued[0].student holds a NUL: 'A\x00'",
+    ),
+    "half a character in a name": (
+        changed(("issued", 0, "student"), r'"A\ud800"'),
+        "issued[0].student holds half a character",
+    ),
     "100 000 lists": (lambda data: DEEP.encode(), "nested too deep"),
     "a sitting that is a text": (changed(("issued", 0, "sitting"), '"2"'), "sitting is a whole number"),
     "nobody's columns": (changed(("students",), '["Ana"]'), "the students in it are not columns"),
-}  # fmt: skip
+}
 
 
 OTHERS = [name for name in READERS if name.startswith("issued, ")]
@@ -242,19 +309,31 @@ ROWS = {
     ("marks, of a report", lambda data: data.replace(b"Ben", b"B\0n", 1)): "marks.csv, line 9: a NUL byte",
     ("marks, as they stand", lambda data: data.replace(b"Ben", b"B\0n", 1)): "marks.csv, line 9: a NUL byte",
     ("accepted", lambda data: data.replace(b"good", b"g\0od")): "accepted.csv, line 2: a NUL byte",
-    ("summary, for a platform", lambda data: data.replace(b",20,", b",inf,")): "out_of of Ana must be a number; found 'inf'",
+    (
+        "summary, for a platform",
+        lambda data: data.replace(b",20,", b",inf,"),
+    ): "out_of of Ana must be a number; found 'inf'",
     ("dump, person.csv", lambda data: data.replace(b"Ben", b"B\xe9n", 1)): "person.csv is not UTF-8",
     ("dump, person.csv", lambda data: data + data.splitlines(True)[-1]): "person.csv is damaged",
     ("dump, person.csv", lambda data: data + b"1\r\n"): "person.csv, line 5: 1 cells where the header has",
-    ("dump, person.csv", lambda data: data.replace(b"\n1,", b"\n" + b"9" * 5000 + b",")): "line 2: id has a value that no dump has",
-    ("dump, person.csv", lambda data: data.replace(b"\n1,", b"\n" + b"9" * 30 + b",")): "line 2: id has a value that no dump has",
+    (
+        "dump, person.csv",
+        lambda data: data.replace(b"\n1,", b"\n" + b"9" * 5000 + b","),
+    ): "line 2: id has a value that no dump has",
+    (
+        "dump, person.csv",
+        lambda data: data.replace(b"\n1,", b"\n" + b"9" * 30 + b","),
+    ): "line 2: id has a value that no dump has",
     ("dump, mark.csv", lambda data: data.replace(b"id,", b"id,id,", 1)): "has the columns",
     ("dump, variant.csv", lambda data: data.replace(b'"{', DEEP.encode() + b'"{', 1)): "variant.csv, line 2",
-    ("dump, variant.csv", lambda data: data.replace(b'""given""', b'""taken""')): "the part of the dump about",
+    (
+        "dump, variant.csv",
+        lambda data: data.replace(b'""given""', b'""taken""'),
+    ): "the part of the dump about",
     ("dump, dump.json", lambda data: DEEP.encode()): "nested too deep",
     ("dump, dump.json", lambda data: data.replace(b'"rows"', b'"row"')): "does not state the number of rows",
     ("dump, dump.json", lambda data: data.replace(b": 3", b": null")): "does not state the number of rows",
-}  # fmt: skip
+}
 
 
 @pytest.mark.parametrize(("reader", "damage"), ROWS, ids=lambda one: one if isinstance(one, str) else None)
@@ -319,9 +398,12 @@ def test_a_parquet_of_odd_columns_is_one_rejection(tmp_path):
     arrow, parquet = pytest.importorskip("pyarrow"), pytest.importorskip("pyarrow.parquet")
     usual = {name: arrow.array(["a"]) for name in ("student", "exercise", "seed", "part", "answer")}
     odd = (
-        arrow.array([1], arrow.timestamp("ns")), arrow.array([2**62], arrow.timestamp("us")), arrow.array([b"\xff"]),
-        arrow.array([{"a": 1}]), arrow.array([1], arrow.time64("ns")),
-    )  # fmt: skip
+        arrow.array([1], arrow.timestamp("ns")),
+        arrow.array([2**62], arrow.timestamp("us")),
+        arrow.array([b"\xff"]),
+        arrow.array([{"a": 1}]),
+        arrow.array([1], arrow.time64("ns")),
+    )
     for number, column in enumerate(odd):
         for name in usual:
             parquet.write_table(arrow.table({**usual, name: column}), tmp_path / f"{number}.parquet")

@@ -1,4 +1,5 @@
-"""The documentation keeps up with what it tells of: links, commands, code, and the gallery of every exercise."""
+"""The documentation keeps up with what it tells of: links, commands, code, and the gallery of every
+exercise."""
 
 from __future__ import annotations
 

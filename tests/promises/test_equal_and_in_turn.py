@@ -1,4 +1,5 @@
-"""Draws are fair to all: each is out of the same points, and no question that all are asked has one answer for all."""
+"""Draws are fair to all: each is out of the same points, and no question that all are asked has one answer
+for all."""
 
 import json
 from collections import Counter

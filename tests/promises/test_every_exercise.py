@@ -182,7 +182,8 @@ PLACES_ON_PAGE = r'<svg.*?</svg>|<style.*?</style>|data:image/svg[^"]*'
 @every_language
 @sweeps.seeds(1, 3)
 def test_a_handout_holds_no_answer(name, lang, seeds):
-    """No reference value, to four digits, stands in what the student receives, but where it is a given one."""
+    """No reference value, to four digits, stands in what the student receives, but where it is a given
+    one."""
     for key in keys(name)[seeds.start : seeds.stop]:
         handout, renderer = key.variant.in_language(lang).handout(), renderer_of(COURSE.folder)
         given = {f"{abs(v):.4g}" for v in key.variant.given.values() if isinstance(v, float)}

@@ -1,4 +1,5 @@
-"""Every exercise's figures as sheets show them, over 200 variants: no label on a line, on another label, off the paper."""
+"""Every exercise's figures as sheets show them, over 200 variants: no label on a line, on another label, off
+the paper."""
 
 import math
 import re
@@ -55,7 +56,8 @@ def strokes(svg):
 
 
 def faults(figure):
-    """What is wrong with the labels of a figure: pairs that overlap, labels on a line, labels off the paper."""
+    """What is wrong with the labels of a figure: pairs that overlap, labels on a line, labels off the
+    paper."""
     boxes = figure.labels()
     if not boxes:
         return []
@@ -78,8 +80,8 @@ def faults(figure):
 
 
 def mistaken(figure):
-    """Names of points whose box is not nearer to their own point than to any other point that has a name, and that
-    no leader ties to it."""
+    """Names of points whose box is not nearer to their own point than to any other point that has a name, and
+    that no leader ties to it."""
     named = {
         k: complex(it.p) * figure.scale
         for k, it in enumerate(figure.elements)
@@ -112,7 +114,8 @@ def test_no_label_sits_on_a_line_or_on_another_label_in_statement_or_solution(na
         found[variant.seed] = [fault for figure in figures for fault in faults(figure)]
         # What fits its room is printed at its own size, so its letters are as large as they are drawn.
         assert all(np.less_equal(figure.size_mm, room).all() for figure in figures)
-        # A figure free to grow fills its room in one direction, but for what labels take when they change sides.
+        # A figure free to grow fills its room in one direction, but for what labels take when they change
+        # sides.
         free = [f for f in figures if f.fixed_scale is None and not f.bounded]
         assert all(np.divide(figure.size_mm, room).max() > 0.8 for figure in free)
     assert not {seed: bad for seed, bad in found.items() if bad}

@@ -1,7 +1,8 @@
-"""Whatever a file holds, its reader gives a value or refuses it by name, in little time and memory; rows in are rows out.
+"""Whatever a file holds, its reader gives a value or refuses it by name, in little time and memory; rows in
+are rows out.
 
-The cases are the same at each run: few of each reader here, thousands among the slow tests. What the fuzz found stays as
-a case of its own.
+The cases are the same at each run: few of each reader here, thousands among the slow tests. What the fuzz
+found stays as a case of its own.
 """
 
 from __future__ import annotations
@@ -203,8 +204,18 @@ def test_an_attempt_of_many_digits_is_none(tmp_path):
 
 
 @pytest.mark.parametrize(
-    "field", ['"least": 1e999', '"number": "1"', '"is_straight": 1', '"code": []', '"reason": "\\ud800"', '"least": ' + "[" * 5000, '"number": true', '"fields": [{}]']
-)  # fmt: skip
+    "field",
+    [
+        '"least": 1e999',
+        '"number": "1"',
+        '"is_straight": 1',
+        '"code": []',
+        '"reason": "\\ud800"',
+        '"least": ' + "[" * 5000,
+        '"number": true',
+        '"fields": [{}]',
+    ],
+)
 def test_a_page_that_is_kept_otherwise_is_read_anew(tmp_path, field):
     from coursework.scanning.scan_store import stored_page
 
@@ -420,9 +431,10 @@ def tiff(width, height):
 
 def pdf(box, pages=1):
     parts = [
-        b"<</Type/Catalog/Pages 2 0 R>>", b"<</Type/Pages/Kids[%s]/Count %d>>" % (b" ".join([b"3 0 R"] * pages), pages),
+        b"<</Type/Catalog/Pages 2 0 R>>",
+        b"<</Type/Pages/Kids[%s]/Count %d>>" % (b" ".join([b"3 0 R"] * pages), pages),
         b"<</Type/Page/Parent 2 0 R/MediaBox[%s]>>" % box,
-    ]  # fmt: skip
+    ]
     data, places = b"%PDF-1.4\n", []
     for number, part in enumerate(parts, start=1):
         places.append(len(data))

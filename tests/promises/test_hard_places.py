@@ -1,4 +1,5 @@
-"""Every exercise keeps its digits at hard places: the error is what the last digits of the given numbers make anyway.
+"""Every exercise keeps its digits at hard places: the error is what the last digits of the given numbers make
+anyway.
 
 Against the formulas of its own solution in sixty digits; a new exercise is held to it without a line here.
 """

@@ -1,7 +1,9 @@
-"""On the way to every hard place of every exercise the solver errs by no more than the last digits of the data explain.
+"""On the way to every hard place of every exercise the solver errs by no more than the last digits of the
+data explain.
 
-The places are found from the formulas (:mod:`coursework.accuracy.hard_places`), the right values have a hundred digits, and
-what is unavoidable is the condition number times the last digit: an error may be eight times that.
+The places are found from the formulas (:mod:`coursework.accuracy.hard_places`), the right values have a
+hundred digits, and what is unavoidable is the condition number times the last digit: an error may be eight
+times that.
 """
 
 from __future__ import annotations
@@ -53,7 +55,8 @@ def test_no_digit_is_lost_beside_a_length_far_larger_than_the_rest():
 
 @pytest.mark.parametrize("name", sampled(NUMERIC))
 def test_the_reference_closes_the_equations_that_are_stated_besides(name):
-    """Loops, their derivatives and the residual, at a hundred digits, or in doubles where they take those alone."""
+    """Loops, their derivatives and the residual, at a hundred digits, or in doubles where they take those
+    alone."""
     exercise = COURSE[name]
     reference = Reference(exercise, numbers_of(exercise))
     assert not reference.lacking

@@ -1,4 +1,5 @@
-"""Order of imports: a file imports from its own folder and from folders below it, wherever the import stands."""
+"""Order of imports: a file imports from its own folder and from folders below it, wherever the import
+stands."""
 
 import ast
 from functools import cache
@@ -8,8 +9,10 @@ from tables import each_row
 
 #: From the ground up.
 ROOMS = (
-    "messages errors degrees system language kinematics markup figures structure mechanics parsing quantities kinds model solution "
-    "linkages course marking sheets scenes rendering accuracy issuing gradebook selfstudy scanning database platforms nbgrader authoring api site __init__ cli __main__"
+    "messages errors degrees system language kinematics markup figures structure mechanics parsing "
+    "quantities kinds model solution "
+    "linkages course marking sheets scenes rendering accuracy issuing gradebook selfstudy scanning "
+    "database platforms nbgrader authoring api site __init__ cli __main__"
 ).split()
 
 
@@ -24,7 +27,8 @@ def imported(file):
 
 
 def imports(found):
-    """The modules of the package that are imported at the top, inside functions or for types alone, with the line."""
+    """The modules of the package that are imported at the top, inside functions or for types alone, with the
+    line."""
     for node in found:
         if isinstance(node, ast.Import):
             yield from (

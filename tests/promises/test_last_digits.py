@@ -1,4 +1,5 @@
-"""What is drawn or printed hangs on no last digit: other processors and libraries, whose last bits differ, print the same."""
+"""What is drawn or printed hangs on no last digit: other processors and libraries, whose last bits differ,
+print the same."""
 
 from __future__ import annotations
 
@@ -119,8 +120,12 @@ _BUILD = """
 import hashlib, json, sys
 from pathlib import Path
 from coursework.cli import run
-assert run(["build", *sys.argv[2:], "--variants", "2", "--formats", "html,ipynb,tex", "--out", sys.argv[1]]) == 0
-files = {p.relative_to(sys.argv[1]).as_posix(): hashlib.sha256(p.read_bytes()).hexdigest() for p in Path(sys.argv[1]).rglob("*") if p.is_file()}
+out = sys.argv[1]
+assert run(["build", *sys.argv[2:], "--variants", "2", "--formats", "html,ipynb,tex", "--out", out]) == 0
+files = {
+    p.relative_to(out).as_posix(): hashlib.sha256(p.read_bytes()).hexdigest()
+    for p in Path(out).rglob("*") if p.is_file()
+}
 print(json.dumps(files), file=sys.stderr)
 """
 
@@ -141,7 +146,8 @@ def built(folder, names, around):
 @pytest.mark.slow
 @pytest.mark.parametrize("names", [NAMES[k::4] for k in range(4)], ids=["first", "second", "third", "fourth"])
 def test_a_build_has_the_same_bytes_without_vector_units(names, tmp_path):
-    """The same numbers by other instructions, so that last bits differ; other versions of numpy: ``make golden``."""
+    """The same numbers by other instructions, so that last bits differ; other versions of numpy:
+    ``make golden``."""
     found = np.show_config("dicts").get("SIMD Extensions", {}).get("found", [])
     plain = {
         "NPY_DISABLE_CPU_FEATURES": " ".join(found),

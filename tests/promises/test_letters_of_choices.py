@@ -101,14 +101,20 @@ def test_the_letter_of_every_right_answer_is_right_and_of_every_other_is_not(nam
 
 OLD_NAMES = {
     "fr": {
-        "point_contact": "une ponctuelle", "annular": "linéaire annulaire", "spherical": "rotule",
-        "spherical_pin": "une rotule à doigt", "line_contact": "linéaire rectiligne",
+        "point_contact": "une ponctuelle",
+        "annular": "linéaire annulaire",
+        "spherical": "rotule",
+        "spherical_pin": "une rotule à doigt",
+        "line_contact": "linéaire rectiligne",
     },
     "en": {
-        "point_contact": "a point contact", "annular": "annular linear joint", "spherical": "a ball joint",
-        "spherical_pin": "ball joint with pin", "line_contact": "line contact",
+        "point_contact": "a point contact",
+        "annular": "annular linear joint",
+        "spherical": "a ball joint",
+        "spherical_pin": "ball joint with pin",
+        "line_contact": "line contact",
     },
-}  # fmt: skip
+}
 
 
 @pytest.mark.parametrize("lang", OLD_NAMES)

@@ -1,4 +1,5 @@
-"""The promises that mechanisms stated as files keep: ``coursework check`` over each that comes with the package."""
+"""The promises that mechanisms stated as files keep: ``coursework check`` over each that comes with the
+package."""
 
 import re
 
@@ -15,7 +16,8 @@ QUICK = ("crossed_slides", "planet_wheel")  #: of files that are checked, those 
     "name", [name if name in QUICK else pytest.param(name, marks=pytest.mark.sweep) for name in NAMES]
 )
 def test_a_file_to_start_from_passes_its_check(name):
-    """With as many different variants as a class takes, where it is no class of three, which takes minutes."""
+    """With as many different variants as a class takes, where it is no class of three, which takes
+    minutes."""
     count = 4 if name in QUICK or name.startswith("class_three") else 30
     assert check(course()[name], count, rendered=0).failures == []
 
@@ -26,7 +28,8 @@ def test_a_file_to_start_from_passes_its_check(name):
     ids=["few", "all"],
 )
 def test_joints_hold_where_nothing_moves_or_only_speeds_up(names):
-    """The gaps are measured by what moves: with all rates zero there are none, with the speed alone zero none but of rounding."""
+    """The gaps are measured by what moves: with all rates zero there are none, with the speed alone zero none
+    but of rounding."""
     wide = {}
     for name in names:
         exercise = course()[name]
@@ -43,7 +46,8 @@ def test_joints_hold_where_nothing_moves_or_only_speeds_up(names):
 
 
 def test_no_sheet_says_that_a_length_is_itself():
-    """A number in a file is called by its ends: its value stands among the data, and there is nothing more to say of it."""
+    """A number in a file is called by its ends: its value stands among the data, and there is nothing more to
+    say of it."""
     said = {}
     for name in NAMES:
         for lang in ("fr", "en"):

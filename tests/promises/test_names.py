@@ -1,12 +1,17 @@
-"""Names and docstrings that a colleague guesses: a class name stands in one file, a docstring says what is taken, returned or done."""
+"""Names and docstrings that a colleague guesses: a class name stands in one file, a docstring says what is
+taken, returned or done."""
 
 import ast
 import re
 from collections import defaultdict
+from pathlib import Path
 
 from package_trees import nodes, trees
 
-#: The public name of a variant is the class that course authors and notebooks see, and extends the course's own.
+ROOT = Path(__file__).resolve().parents[2]
+ROOMS = ("coursework", "exercises", "solutions", "tests", "docs", "benchmarks", "locks")
+#: The public name of a variant is the class that course authors and notebooks see, and extends the course's
+#: own.
 IN_TWO_FILES = {"Variant"}
 
 CLAUSE = re.compile(r"(What|Who|Whoever|Whose|Whether|How|Where|Which|That|This|It)\b")
@@ -32,6 +37,14 @@ def test_a_class_name_stands_in_one_file():
             files[node.name].add(file)
     shared = {name: sorted(where) for name, where in files.items() if len(where) > 1}
     assert {name: where for name, where in shared.items() if name not in IN_TWO_FILES} == {}
+
+
+def test_the_formatter_decides_every_layout():
+    """Lines of 110 are the linter's to keep."""
+    spared = re.compile("# *fmt" + ": *(skip|off)")
+    written = [path for room in ROOMS for path in (ROOT / room).rglob("*.py")]
+    assert len(written) > 1000
+    assert [path for path in written if spared.search(path.read_text("utf-8"))] == []
 
 
 def test_a_docstring_begins_with_a_verb_or_a_noun_and_no_clause():

@@ -1,4 +1,5 @@
-"""Nobody is paid for nothing: texts that answer nothing are read as nothing, in every part of every exercise and of every kind."""
+"""Nobody is paid for nothing: texts that answer nothing are read as nothing, in every part of every exercise
+and of every kind."""
 
 from __future__ import annotations
 
@@ -36,7 +37,8 @@ def every_kind(tmp_path_factory):
 
 
 def asked(course):
-    """Every part of a course that a machine marks, with a variant that asks it; parts that read alike once."""
+    """Every part of a course that a machine marks, with a variant that asks it; parts that read alike
+    once."""
     seen = set()
     for name in course.names:
         left = {part.id for part in course[name].judged_parts}

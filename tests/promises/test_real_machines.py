@@ -1,4 +1,5 @@
-"""Real machines: each number that a lesson states is found again without the solver, and no number of a machine is typed by hand."""
+"""Real machines: each number that a lesson states is found again without the solver, and no number of a
+machine is typed by hand."""
 
 from __future__ import annotations
 
@@ -22,7 +23,8 @@ TURN = np.radians(np.arange(0.0, 360.0, 0.25))
 
 
 def joined(A, C, a, c, side):
-    """The point at a from A and at c from C, on the left of A -> C (1) or on the right (-1), by Pythagoras."""
+    """The point at a from A and at c from C, on the left of A -> C (1) or on the right (-1), by
+    Pythagoras."""
     way = C - A
     along = (abs(way) ** 2 + a**2 - c**2) / (2 * abs(way))
     return A + way / abs(way) * (along + 1j * side * np.sqrt(a**2 - along**2))
@@ -39,7 +41,8 @@ def ends(wave):
 
 
 def levers():
-    """The windscreen wiper by its triangles, the bus by its parallelogram, the lorry and the crane by energy."""
+    """The windscreen wiper by its triangles, the bus by its parallelogram, the lorry and the crane by
+    energy."""
     A, C = 42 * np.exp(1j * TURN), -260.0
     B = joined(A, C, 257, 58, -1)
     forward, sweep = ends(np.unwrap(np.angle(B - C)))
@@ -155,7 +158,8 @@ def toy():
 
 
 def strokes():
-    """The shaper by its triangle, the needle by its sine, the engine by its toggle, the cross by its closed forms."""
+    """The shaper by its triangle, the needle by its sine, the engine by its toggle, the cross by its closed
+    forms."""
     A = 250j + 100 * np.exp(1j * TURN)
     D = 560 * A / abs(A)
     x = D.real - np.sqrt(180**2 - (D.imag - 480) ** 2)

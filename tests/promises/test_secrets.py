@@ -1,7 +1,9 @@
-"""An exam is secret until it opens: who has the package, the course and every public word draws none of its papers.
+"""An exam is secret until it opens: who has the package, the course and every public word draws none of its
+papers.
 
-The student of these tests has the public package and all that she may know: the assignment's name, its exercises, parts, fixed
-seeds and dates, the names and numbers of the class, and afterwards every sheet with its code. What she lacks is the secret.
+The student of these tests has the public package and all that she may know: the assignment's name, its
+exercises, parts, fixed seeds and dates, the names and numbers of the class, and afterwards every sheet with
+its code. What she lacks is the secret.
 """
 
 import json
@@ -56,7 +58,8 @@ def same(one, other):
 
 
 def drawn_before(issued, guessed):
-    """The papers that the student has drawn, of those that are issued; by luck she may have some of the smallest exercises."""
+    """The papers that the student has drawn, of those that are issued; by luck she may have some of the
+    smallest exercises."""
     mine, hers = papers(issued), papers(guessed)
     assert mine.keys() == hers.keys()
     return [place for place in mine if same(mine[place], hers[place]) and not known_by_luck(place[1])]
@@ -85,7 +88,8 @@ def dealt(path, before=None, make_up=(), students=CLASS):
 
 @whole_course
 def test_every_exercise_is_drawn_by_the_secret(tmp_path):
-    """By its code the public package gives other values, in other orders of choices, and another secret gives others too."""
+    """By its code the public package gives other values, in other orders of choices, and another secret gives
+    others too."""
     one, other = Secret.new(), Secret.new()
     shared = []
     for name in (name for name in COURSE.names if not known_by_luck(name)):
@@ -163,8 +167,11 @@ def test_no_pool_of_a_platform_is_drawn_by_who_has_the_package(tmp_path, platfor
         pools.append(json.loads((tmp_path / who / "issued.json").read_text("utf-8")))
     mine, hers = ([item["record"]["given"] for item in pool["issued"]] for pool in pools)
     assert [given for given in mine if given in hers] == []
-    assert [r for r in (i["record"] for i in pools[0]["issued"])
-            if same(COURSE[r["exercise"]].variant(r["seed"]).record, r)] == []  # fmt: skip
+    assert [
+        r
+        for r in (i["record"] for i in pools[0]["issued"])
+        if same(COURSE[r["exercise"]].variant(r["seed"]).record, r)
+    ] == []
     again = [platform, str(path), "--variants", "5", "--lang", "en", "--out", str(tmp_path / "instructor")]
     assert run(["export", *again]) == 0
     more = json.loads((tmp_path / "instructor" / "issued.json").read_text("utf-8"))
@@ -266,9 +273,15 @@ def test_what_was_issued_without_a_secret_goes_on_and_who_comes_later_has_one(tm
 
 @pytest.mark.parametrize(
     "line",
-    ['secret = "abc"', 'secret = "zz6c5d1f2a9e47388c1fd2b7a4e3905d"', "secret = 12", 'secret = ""',
-     'secret = "00000000000000000000000000000000"', 'secret = ["0b6c5d1f2a9e47388c1fd2b7a4e3905d"]'],
-)  # fmt: skip
+    [
+        'secret = "abc"',
+        'secret = "zz6c5d1f2a9e47388c1fd2b7a4e3905d"',
+        "secret = 12",
+        'secret = ""',
+        'secret = "00000000000000000000000000000000"',
+        'secret = ["0b6c5d1f2a9e47388c1fd2b7a4e3905d"]',
+    ],
+)
 def test_a_malformed_secret_is_refused_with_its_line_and_is_not_quoted(tmp_path, line):
     with pytest.raises(coursework.CourseworkError) as fault:
         read_assignment(stated(tmp_path, head=line), COURSE)

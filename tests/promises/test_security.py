@@ -1,4 +1,5 @@
-"""The table of docs/security.md: every requirement of ASVS 5.0 of levels 1 and 2, once, with a proof that is there."""
+"""The table of docs/security.md: every requirement of ASVS 5.0 of levels 1 and 2, once, with a proof that is
+there."""
 
 from __future__ import annotations
 

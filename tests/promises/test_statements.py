@@ -1,4 +1,5 @@
-"""What a student has of an exercise without its printed sheet says all that the drawing and the answers need."""
+"""What a student has of an exercise without its printed sheet says all that the drawing and the answers
+need."""
 
 import re
 

@@ -1,4 +1,5 @@
-"""What is installed: lock files with digests, bounded requirements, no name that a stranger could register, third-party files."""
+"""What is installed: lock files with digests, bounded requirements, no name that a stranger could register,
+third-party files."""
 
 from __future__ import annotations
 
@@ -33,7 +34,8 @@ TOOLS = {"docs", "e2e", "test"}
 
 
 def requirements(extra: str) -> list[str]:
-    """Return the requirements of an extra on other packages, those of the extras that it refers to included."""
+    """Return the requirements of an extra on other packages, those of the extras that it refers to
+    included."""
     found = []
     for text in STATED[extra]:
         one = Requirement(text)
@@ -45,12 +47,24 @@ def requirements(extra: str) -> list[str]:
 EXTRAS = {extra: requirements(extra) for extra in STATED}
 
 PLACES = [
-    {"python_version": f"3.{minor}", "python_full_version": f"3.{minor}.1", "sys_platform": system, "os_name": os,
-     "platform_system": name, "implementation_name": "cpython", "platform_python_implementation": "CPython",
-     "platform_machine": "x86_64", "extra": ""}
+    {
+        "python_version": f"3.{minor}",
+        "python_full_version": f"3.{minor}.1",
+        "sys_platform": system,
+        "os_name": os,
+        "platform_system": name,
+        "implementation_name": "cpython",
+        "platform_python_implementation": "CPython",
+        "platform_machine": "x86_64",
+        "extra": "",
+    }
     for minor in (11, 12, 13, 14)
-    for system, os, name in (("linux", "posix", "Linux"), ("win32", "nt", "Windows"), ("darwin", "posix", "Darwin"))
-]  # fmt: skip
+    for system, os, name in (
+        ("linux", "posix", "Linux"),
+        ("win32", "nt", "Windows"),
+        ("darwin", "posix", "Darwin"),
+    )
+]
 
 needs_sources = pytest.mark.skipif(not LOCKS.is_dir(), reason="the lock files are beside the sources")
 
@@ -133,8 +147,11 @@ def test_what_locked_packages_need_is_locked():
                 continue
             if here.version in {str(one.specifier).removeprefix("==") for one, _ in pins}:
                 looked_at += 1
-                asked = [str(one) for one in map(Requirement, here.requires or ())
-                         if one.marker is None or one.marker.evaluate(PLACES[0])]  # fmt: skip
+                asked = [
+                    str(one)
+                    for one in map(Requirement, here.requires or ())
+                    if one.marker is None or one.marker.evaluate(PLACES[0])
+                ]
                 here_and_now = [one for one in lacking(lock, asked) if "on 3.11 linux" in one]
                 assert not here_and_now, (file.name, name)
     assert looked_at
@@ -233,14 +250,17 @@ def test_nobody_is_told_to_install_a_name_that_a_stranger_could_register():
         ({"url": "file://{place}/a.whl", "archive_info": {}}, "pip install '{place}/a.whl[site]'"),
         ({"url": "file://{place}/gone.whl", "archive_info": {}}, f'pip install "./{WHEEL}[site]"'),
         ({"url": "file://{place}/gone", "dir_info": {}}, f'pip install "./{WHEEL}[site]"'),
-        ({"url": "https://example.org/a.whl", "archive_info": {}}, f"pip install '{DISTRIBUTION}[site] @ https://example.org/a.whl'"),
+        (
+            {"url": "https://example.org/a.whl", "archive_info": {}},
+            f"pip install '{DISTRIBUTION}[site] @ https://example.org/a.whl'",
+        ),
         (
             {"url": "https://example.org/c", "vcs_info": {"vcs": "git", "commit_id": "a1"}},
             f"pip install '{DISTRIBUTION}[site] @ git+https://example.org/c@a1'",
         ),
         ({}, f'pip install "./{WHEEL}[site]"'),
     ],
-)  # fmt: skip
+)
 def test_an_extra_is_added_from_where_the_package_was_installed(told, said, tmp_path, monkeypatch):
     (tmp_path / "pyproject.toml").touch()
     (tmp_path / "a.whl").touch()

@@ -1,4 +1,5 @@
-"""Every picture is told in words, in the sheet's language, with the points it shows, and without an answer."""
+"""Every picture is told in words, in the sheet's language, with the points it shows, and without an
+answer."""
 
 from __future__ import annotations
 

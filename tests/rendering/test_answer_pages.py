@@ -47,7 +47,8 @@ def answer_pictures(pdf, count, per_mm=PER_MM):
 
 
 def line_at(picture, along, at, across, reach=0.45):
-    """Where a line is, mm: the middle of what is dark within ``reach`` of a place, on a cut through the page."""
+    """Where a line is, mm: the middle of what is dark within ``reach`` of a place, on a cut through the
+    page."""
     first, last = round((at - reach) * PER_MM), round((at + reach) * PER_MM)
     if along == "x":
         strip = picture[round(across * PER_MM), first:last]

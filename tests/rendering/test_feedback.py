@@ -1,5 +1,5 @@
-"""Feedback as a student meets it: nothing torn, nothing boxed, answers that are copied as they were typed, all of it in
-three formats."""
+"""Feedback as a student meets it: nothing torn, nothing boxed, answers that are copied as they were typed,
+all of it in three formats."""
 
 from __future__ import annotations
 
@@ -31,22 +31,30 @@ RENDERER = builtin_renderer()
 every_language = pytest.mark.parametrize("lang", sampled(languages(), ["fr"]))
 
 SENTENCES = {
-    "fr": "Le raisonnement cinématique reste incomplet : reprenez la fermeture géométrique, dérivez-la deux fois, puis "
+    "fr": "Le raisonnement cinématique reste incomplet : reprenez la fermeture géométrique, dérivez-la deux "
+    "fois, puis "
     "projetez perpendiculairement au guide avant toute application numérique. ",
-    "en": "The kinematic reasoning is not complete yet: start again from the geometrical closure, differentiate it twice, and "
+    "en": "The kinematic reasoning is not complete yet: start again from the geometrical closure, "
+    "differentiate it twice, and "
     "project it perpendicularly to the guide before any numerical application. ",
 }
 TYPED = (
-    "104.6", "−75,4 °", "12345678901234567890.123456789012345678901234567890123456789012345678901234567890123456789",
+    "104.6",
+    "−75,4 °",
+    "12345678901234567890.123456789012345678901234567890123456789012345678901234567890123456789",
     "r2*cos(theta2)+r3*cos(theta3)-r1-r4*cos(theta4)+r2*cos(theta2)+r3*cos(theta3)-r1-r4*cos(theta4)=0",
-    "ŒuvreÉlèveGarçonÑandúŁódźŽižekÅngström" * 6, "don't -- \"say\" 'so'... <b>#x$ *y* _z_ `w` [a] @b /c ~d ; e ? f !",
-    "-79.25925925925925", "l'angle vaut 12 mm ; sinon ?", "a" * 300, "2,5·10³ rad/s²",
-)  # fmt: skip
+    "ŒuvreÉlèveGarçonÑandúŁódźŽižekÅngström" * 6,
+    "don't -- \"say\" 'so'... <b>#x$ *y* _z_ `w` [a] @b /c ~d ; e ? f !",
+    "-79.25925925925925",
+    "l'angle vaut 12 mm ; sinon ?",
+    "a" * 300,
+    "2,5·10³ rad/s²",
+)
 
 
 def synthetic(lang: str, count: int, seed: int, most: int = 6) -> FeedbackSheet:
-    """A sheet of so many questions, its answers and sentences of every length: the first and last words of each
-    sentence tell its question."""
+    """A sheet of so many questions, its answers and sentences of every length: the first and last words of
+    each sentence tell its question."""
     choose = random.Random(seed)
     sheet = feedback_sheet(lang, student="Zoé Martin")
     lines = []
@@ -59,11 +67,16 @@ def synthetic(lang: str, count: int, seed: int, most: int = 6) -> FeedbackSheet:
         full = verdict == "correct"
         lines.append(
             replace(
-                line, question=question, answer=choose.choice(TYPED), verdict=verdict if says else "correct",
-                says=says, points=line.out_of if full else 0.0, right="" if full else r"$\num{319.8}\ \mathrm{mm}$",
+                line,
+                question=question,
+                answer=choose.choice(TYPED),
+                verdict=verdict if says else "correct",
+                says=says,
+                points=line.out_of if full else 0.0,
+                right="" if full else r"$\num{319.8}\ \mathrm{mm}$",
                 hint="" if full else f"$r_A$, question {number}",
             )
-        )  # fmt: skip
+        )
     return replace(sheet, lines=tuple(lines), points=sum(one.points for one in lines))
 
 
@@ -170,7 +183,8 @@ def test_sentences_are_hyphenated_by_the_rules_of_their_language(lang):
 @every_language
 @at_once(COURSE.names, ("velocity_polygon", "four_bar_motion", "joint_twist", "ball_reducer"))
 def test_every_letter_of_the_sheets_is_drawn_with_its_arrow_and_its_dots(lang, names):
-    """Each question of each exercise, answered by a choice with formulas in it or not at all: no square stands for a letter."""
+    """Each question of each exercise, answered by a choice with formulas in it or not at all: no square
+    stands for a letter."""
     from coursework.gradebook.feedback_sheets import feedback_sheet as told
     from coursework.gradebook.graded_sheet import Graded
     from coursework.marking.marking import mark
@@ -356,9 +370,13 @@ def test_the_worked_solution_stands_after_the_feedback_in_every_format(lang):
     whole = FeedbackPaper(bare(lang), (sheet,), 3, 7)
     closure = words(lang)["sheet"]["answer"]
     for text in (
-        "".join(page_texts(RENDERER.pdf(sheet))), RENDERER.html(sheet), "".join(_cells(sheet)),
-        "".join(page_texts(RENDERER.pdf(whole))), RENDERER.html(whole), "".join(_cells(whole)),
-    ):  # fmt: skip
+        "".join(page_texts(RENDERER.pdf(sheet))),
+        RENDERER.html(sheet),
+        "".join(_cells(sheet)),
+        "".join(page_texts(RENDERER.pdf(whole))),
+        RENDERER.html(whole),
+        "".join(_cells(whole)),
+    ):
         assert title in text
         assert text.index(title) > text.index(words(lang)["feedback"]["legend"])
         assert closure in text[text.index(title) :]

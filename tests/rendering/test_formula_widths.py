@@ -122,10 +122,22 @@ def test_data_stand_beside_the_widest_figure(lang, names):
 @each_row(
     "tall",
     [
-        r"$\dfrac{a}{b}$", r"$\tfrac{a}{b}$", r"$\frac{a}{b}$", r"$\sqrt{a}$", r"$\prod_i a_i$", "$$x$$", "a\n\nb", "- a\n- b",
-        "a\\\nb", "# a", "- a", "1. a", "> a", r"$\begin{matrix} a \\ b \end{matrix}$",
+        r"$\dfrac{a}{b}$",
+        r"$\tfrac{a}{b}$",
+        r"$\frac{a}{b}$",
+        r"$\sqrt{a}$",
+        r"$\prod_i a_i$",
+        "$$x$$",
+        "a\n\nb",
+        "- a\n- b",
+        "a\\\nb",
+        "# a",
+        "- a",
+        "1. a",
+        "> a",
+        r"$\begin{matrix} a \\ b \end{matrix}$",
     ],
-)  # fmt: skip
+)
 def test_a_cell_that_may_be_taller_than_a_line_makes_its_row_as_high_as_it_needs(tall):
     assert views._row("en", ("$r_A$", 24), ("12 mm", 84)) != "auto"
     assert views._row("en", ("$r_A$", 24), (tall, 84)) == "auto"

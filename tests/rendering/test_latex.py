@@ -128,7 +128,8 @@ def test_every_macro_grid_and_formula_compiles(tmp_path):
 @with_pdflatex
 def test_markdown_of_every_kind_and_hostile_text_compile(tmp_path):
     text = (
-        "**Deux** mots, *un* `a_b%{}` $x$(y)\n\n1. [a]\n2. b\n\n- c\n\n| n | v |\n|:--|--:|\n| $x$ | 2 |\n| [z] | * |\n\n"
+        "**Deux** mots, *un* `a_b%{}` $x$(y)\n\n1. [a]\n2. b\n\n- c\n\n| n | v |\n|:--|--:|\n| $x$ | 2 "
+        "|\n| [z] | * |\n\n"
         "$$x = 1$$\n\n> note\n\n## Titre\n\n    code  {x} % \\y\n\n---\n\n[lien](http://a.b/c_d)"
     )
     written = to_latex_markup(text, "fr").replace(r"\toprule", "").replace(r"\midrule", "")

@@ -1,5 +1,5 @@
-"""No page of a handout holds a few questions that are left over: where a page's end parts them, four at least come after
-it. In a solution a question and its answer stand on one page."""
+"""No page of a handout holds a few questions that are left over: where a page's end parts them, four at least
+come after it. In a solution a question and its answer stand on one page."""
 
 from __future__ import annotations
 
@@ -29,7 +29,8 @@ _NUMBER = "strong[#number.]"
 
 @pytest.fixture(scope="module")
 def marked_in():
-    """What is marked ``<found>`` in a text that is typeset: by another process, since the typesetter keeps 10 MB of each."""
+    """What is marked ``<found>`` in a text that is typeset: by another process, since the typesetter keeps 10
+    MB of each."""
     spawn = multiprocessing.get_context("spawn")
     with ProcessPoolExecutor(1, spawn, max_tasks_per_child=40) as pool:
         yield lambda source: json.loads(

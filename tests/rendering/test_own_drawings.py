@@ -1,4 +1,5 @@
-"""Feedback shows the student's own drawing over the right one, where the solution may be shown and nowhere else."""
+"""Feedback shows the student's own drawing over the right one, where the solution may be shown and nowhere
+else."""
 
 import re
 from dataclasses import replace

@@ -1,4 +1,5 @@
-"""Papers: several exercises under one heading, whose every page says whose it is, which numbers, and where it stands."""
+"""Papers: several exercises under one heading, whose every page says whose it is, which numbers, and where it
+stands."""
 
 from __future__ import annotations
 
@@ -72,7 +73,10 @@ def test_every_page_says_whose_it_is_which_seeds_and_which_page_of_how_many(make
     lang, size = printed
     pages = texts(make(lang), size)
     for number, page in enumerate(pages, 1):
-        foot = f"Zoé #1 Martin · slotted_mechanism 7 · grashof 8 · four_bar_positions 9page {number} / {len(pages)}"
+        foot = (
+            f"Zoé #1 Martin · slotted_mechanism 7 · grashof 8 · four_bar_positions 9page {number} / "
+            f"{len(pages)}"
+        )
         assert page.endswith(foot)
 
 

@@ -1,4 +1,5 @@
-"""The drawing surface: one short script without words, let run by its digest; boxes and directions of the sheet."""
+"""The drawing surface: one short script without words, let run by its digest; boxes and directions of the
+sheet."""
 
 import json
 import re

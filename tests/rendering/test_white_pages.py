@@ -1,4 +1,5 @@
-"""No page of a paper but the last is white by more than a quarter of its height, and no data stand before their exercise."""
+"""No page of a paper but the last is white by more than a quarter of its height, and no data stand before
+their exercise."""
 
 import random
 import re
@@ -73,9 +74,9 @@ def test_no_page_but_the_last_is_white_by_more_than_a_quarter(seed):
     assert all(head < place for head, place in zip(heads, sorted(data), strict=True)), names
 
 
-#: Pages of the book that are white by more than a quarter: of the students' volume and of the solutions. Before questions of
-#: solutions could be cut and summaries shared a page there were 19 and 15 in English, 17 and 22 in French. The title page
-#: is one, and the end of the contents may be.
+#: Pages of the book that are white by more than a quarter: of the students' volume and of the solutions.
+#: Before questions of solutions could be cut and summaries shared a page there were 19 and 15 in English, 17
+#: and 22 in French. The title page is one, and the end of the contents may be.
 WHITE = {"en": (6, 7), "fr": (7, 9)}
 
 
@@ -109,7 +110,8 @@ def test_a_drawing_to_scale_lies_on_none_of_the_words_before_it(monkeypatch):
 
 
 def led_astray(texts):
-    """The references to lessons, sections and exercises that name a page on which their heading does not stand."""
+    """The references to lessons, sections and exercises that name a page on which their heading does not
+    stand."""
     heads = [{" ".join(line.split()) for line in text.splitlines()} for text in texts]
     references = re.findall(r"\((lesson|exercise) ([\d.]+)(?: §(\d+))?,\s+p\.\s+(\d+)\)", "\n".join(texts))
     assert len(references) > 100
@@ -147,7 +149,10 @@ def test_what_a_part_of_a_document_chooses_hangs_on_no_other():
     """A block that would move since another part has a mark stays where it is: each part chooses alone."""
     start = UNSETTLED.partition("#in-room()")[0]
     start = start.replace("depth() > 200pt", "query(<told>).len() < 2").replace("200pt", "300pt")
-    part = "\n//#\n#pagebreak(weak: true)\n#in-room()\n#context [#metadata(none)<told> at #here().position().y.pt()]"
+    part = (
+        "\n//#\n#pagebreak(weak: true)\n#in-room()\n#context [#metadata(none)<told> at "
+        "#here().position().y.pt()]"
+    )
     pages = [
         [page.get_textpage().get_text_range() for page in pypdfium2.PdfDocument(pdf.compile_settled(source))]
         for source in (start + part, start + part + part)

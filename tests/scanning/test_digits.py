@@ -1,4 +1,5 @@
-"""What is written in a box is read as it was meant, or is told unsure; on handwriting that trained nothing."""
+"""What is written in a box is read as it was meant, or is told unsure; on handwriting that trained
+nothing."""
 
 from pathlib import Path
 

@@ -1,4 +1,5 @@
-"""A number that is read with less confidence counts where it is the right answer of its variant, and waits otherwise."""
+"""A number that is read with less confidence counts where it is the right answer of its variant, and waits
+otherwise."""
 
 from __future__ import annotations
 

@@ -1,4 +1,5 @@
-"""From the printer to the marks: sheets are built, filled in by hand in simulation, scanned, typed where they wait, and marked."""
+"""From the printer to the marks: sheets are built, filled in by hand in simulation, scanned, typed where they
+wait, and marked."""
 
 from __future__ import annotations
 
@@ -55,7 +56,7 @@ def test_from_the_printer_to_the_marks(tmp_path):
         dict(zip(("student", "exercise", "seed", "part", "coordinate"), card["place"], strict=True))
         | {"answer": truth[card["student"]].get(card["part"], ""), "seen": card["seen"]}
         for card in cards
-    ]  # fmt: skip
+    ]
     (tmp_path / "typed.csv").write_bytes(
         csv_file(typed, ("student", "exercise", "seed", "part", "coordinate", "answer", "seen"))
     )

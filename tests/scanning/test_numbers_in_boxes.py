@@ -1,4 +1,5 @@
-"""What a row of boxes says, by its rules: each row as somebody writes it, and what is read or why it waits."""
+"""What a row of boxes says, by its rules: each row as somebody writes it, and what is read or why it
+waits."""
 
 import numpy as np
 import pytest
@@ -108,7 +109,7 @@ def test_an_empty_row_is_a_blank_answer_and_does_not_wait():
         (row("7", more=lambda hand: hand.cross(FIELD.sign)), "sign"),
         (row("7", more=lambda hand: hand.stroke([(146, 48), (150, 50)])), "unit"),
     ],
-)  # fmt: skip
+)
 def test_what_breaks_a_rule_waits_and_says_why(write, why):
     assert said(write).waits == why
 

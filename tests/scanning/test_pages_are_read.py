@@ -1,4 +1,5 @@
-"""Pages that were filled in, printed and scanned in simulation: found, laid flat, and nothing read that is not there."""
+"""Pages that were filled in, printed and scanned in simulation: found, laid flat, and nothing read that is
+not there."""
 
 from dataclasses import replace
 
@@ -182,7 +183,8 @@ def test_boxes_are_found_to_half_a_millimetre(rows, sheet):
 
 
 def _off(dark, box):
-    """How far the outline of a box, seen where nothing is written, lies from where it was placed: mm, (x, y)."""
+    """How far the outline of a box, seen where nothing is written, lies from where it was placed: mm, (x,
+    y)."""
     reach, off = 6, []
     for level in (False, True):
         near = dark.T if not level else dark

@@ -1,4 +1,5 @@
-"""The page of the queue, opened from the disk: what is typed there is what the job reads, and what it says itself."""
+"""The page of the queue, opened from the disk: what is typed there is what the job reads, and what it says
+itself."""
 
 from __future__ import annotations
 
@@ -140,7 +141,8 @@ def test_it_fits_a_telephone_and_a_desk(opened, width):
     opened.set_viewport_size({"width": width, "height": 800})
     assert opened.evaluate("document.documentElement.scrollWidth") <= width
     small = opened.evaluate(
-        "[...document.querySelectorAll('.bar button, .card button, .card input')].filter((e) => e.getBoundingClientRect().height < 40).length"
+        "[...document.querySelectorAll('.bar button, .card button, .card input')].filter((e) => "
+        "e.getBoundingClientRect().height < 40).length"
     )
     assert small == 0
 

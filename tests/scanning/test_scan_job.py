@@ -1,4 +1,5 @@
-"""The job of reading scans: every page is somewhere, whatever the order of files and however often it is run."""
+"""The job of reading scans: every page is somewhere, whatever the order of files and however often it is
+run."""
 
 from __future__ import annotations
 
@@ -93,16 +94,21 @@ def test_every_page_is_in_the_list_and_every_field_in_answers_or_the_queue(read,
     read()
     listed = rows(read.out / "pages.csv")
     assert [(row["file"], row["page"], row["what"]) for row in listed] == [
-        ("more.tif", "1", "answers"), ("more.tif", "2", "blank"), ("more.tif", "3", "answers"), ("one.png", "1", "answers"),
-    ]  # fmt: skip
+        ("more.tif", "1", "answers"),
+        ("more.tif", "2", "blank"),
+        ("more.tif", "3", "answers"),
+        ("one.png", "1", "answers"),
+    ]
     for row in listed:
         assert (read.out / row["picture"]).is_file()
     places = [tuple(card["place"][:4]) for card in queued(read.out)]
     places += [(r["student"], r["exercise"], r["seed"], r["part"]) for r in rows(read.out / "answers.csv")]
     asked = [
         (student, f.exercise, str(f.seed), f.part)
-        for student in scanned.names for page in scanned.pages(student) for f in page.fields
-    ]  # fmt: skip
+        for student in scanned.names
+        for page in scanned.pages(student)
+        for f in page.fields
+    ]
     assert sorted(places) == sorted(asked)
 
 

@@ -148,7 +148,8 @@ def test_a_point_of_that_name_is_drawn_where_the_solution_says_that_it_is(name):
     ],
 )
 def test_a_coriolis_term_is_what_neither_guide_nor_slide_explains(name, pivot, block):
-    """In a frame that turns with the guide: a = a of the guide's point + a of the slide + the Coriolis term."""
+    """In a frame that turns with the guide: a = a of the guide's point + a of the slide + the Coriolis
+    term."""
     step, speed = 0.02, 2.0
     turns = np.arange(0.0, 360.0, 15.0)
     given = COURSE[name].variant(2).used
@@ -195,7 +196,8 @@ def test_the_readings_are_the_quantities_of_the_scene():
 
 
 def test_a_crank_angle_that_is_an_answer_is_shown_and_the_assembly_kept():
-    """The instant is given by the angle OAB, which takes every value twice a turn, its points on either side."""
+    """The instant is given by the angle OAB, which takes every value twice a turn, its points on either
+    side."""
     exercise = COURSE["quick_return"]
     variant = exercise.variant(3)
     given = variant.used

@@ -1,4 +1,5 @@
-"""Exploration with freely chosen data: rates against slopes of positions, links against their lengths, and what does not close."""
+"""Exploration with freely chosen data: rates against slopes of positions, links against their lengths, and
+what does not close."""
 
 import math
 
@@ -155,10 +156,21 @@ def test_typical_data_close_and_a_single_solution_agrees(name):
 @each_row(
     ("text", "expected"),
     [
-        ("70", 70.0), (" 70,5 ", 70.5), ("−3", 10.0), ("1e9", 90.0), ("1e999", None), ("nan", None), ("inf", None),
-        ("", None), ("70 mm", None), ("'; drop", None), ("9" * 5000, 90.0), ("0x10", None), ("７０", 70.0),
+        ("70", 70.0),
+        (" 70,5 ", 70.5),
+        ("−3", 10.0),
+        ("1e9", 90.0),
+        ("1e999", None),
+        ("nan", None),
+        ("inf", None),
+        ("", None),
+        ("70 mm", None),
+        ("'; drop", None),
+        ("9" * 5000, 90.0),
+        ("0x10", None),
+        ("７０", 70.0),
     ],
-)  # fmt: skip
+)
 def test_a_number_is_read_and_kept_within_its_bounds(text, expected):
     from coursework.scenes.exploration import Parameter
 

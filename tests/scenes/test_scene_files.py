@@ -71,9 +71,12 @@ def test_a_file_is_the_scene_that_it_says(course, write):
     exercise = course["three_loop_shaper"]
     loads = (Load("G", force=800.0, against=True, during="working stroke"), Load("8", moment=2.0))
     added = SceneData(
-        {"8": BodyMass(12.0), "5": BodyMass(4.0, 0.02, 60 + 0j)}, loads, {"G": 0.12, "D": (0.08, 10.0)}, {"G": 80.0},
+        {"8": BodyMass(12.0), "5": BodyMass(4.0, 0.02, 60 + 0j)},
+        loads,
+        {"G": 0.12, "D": (0.08, 10.0)},
+        {"G": 80.0},
         Flywheel(unevenness=0.02),
-    )  # fmt: skip
+    )
     assert read.scene.added == added
     given = {**exercise.variant(7).used, "omega2": 4.0}
     wanted = Scene(
@@ -201,8 +204,15 @@ def test_the_commands_run_a_file(write, tmp_path, capsys):
 
 def test_lines_are_found_where_keys_stand():
     text = 'a = 1\n[t]\nb = 2\n[[l]]\nc = 3\n[[l]]\n"c" = 4\n[u.v]\nw.x = 5\n'
-    assert [line_of(text, path) for path in (("a",), ("t", "b"), ("l", 0, "c"), ("l", 1, "c"), ("u", "v", "w", "x"))] == [
-        1, 3, 5, 7, 9,
-    ]  # fmt: skip
+    assert [
+        line_of(text, path)
+        for path in (("a",), ("t", "b"), ("l", 0, "c"), ("l", 1, "c"), ("u", "v", "w", "x"))
+    ] == [
+        1,
+        3,
+        5,
+        7,
+        9,
+    ]
     assert line_of(text, ("l", 1, "missing")) == 6
     assert line_of(text, ("none",)) == 0

@@ -233,7 +233,8 @@ def test_a_quantity_that_is_shown_is_what_the_solver_gives_at_every_place(course
     "name", ["three_loop_shaper", "quick_return_shaper", "quick_return_whitworth", "havens_planetary"]
 )
 def test_coriolis_is_there_wherever_a_body_slides_on_one_that_turns(course, name):
-    """The acceleration of the pin is that of the guide's point, the sliding one, and Coriolis: by differences."""
+    """The acceleration of the pin is that of the guide's point, the sliding one, and Coriolis: by
+    differences."""
     exercise = course[name]
     scene = Scene(exercise, exercise.variant(0).used, ("coriolis",))
     (column,) = [c for c in scene.over_cycle(8).columns if c.startswith("a_coriolis")]
@@ -287,11 +288,14 @@ def test_the_plan_says_what_is_left_out_and_what_is_not(course):
     heavy = dict(
         plan(
             Scene(
-                shaper, given, ("load", "inertia", "friction"), ("reaction D",),
+                shaper,
+                given,
+                ("load", "inertia", "friction"),
+                ("reaction D",),
                 SceneData({"8": BodyMass(3.0)}, (Load("G", force=10.0),), {"G": 0.1}),
             )
         )
-    )  # fmt: skip
+    )
     assert "equilibrium of 7 bodies, 21 equations an instant" in heavy
     assert "friction by iteration at G" in heavy
     assert heavy["second derivatives of the bodies' angles"] == "the effect inertia"

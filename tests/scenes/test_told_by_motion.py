@@ -1,4 +1,5 @@
-"""A moving figure: its paths look smooth, its labels stand apart, and it tells no answer before it is given."""
+"""A moving figure: its paths look smooth, its labels stand apart, and it tells no answer before it is
+given."""
 
 import json
 import re

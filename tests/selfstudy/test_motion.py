@@ -1,4 +1,5 @@
-"""A mechanism moves in a notebook: it can be dragged, and tells no more than its figure while questions are left."""
+"""A mechanism moves in a notebook: it can be dragged, and tells no more than its figure while questions are
+left."""
 
 import html
 import re

@@ -1,4 +1,5 @@
-"""No name that a student reads tells an answer: choices have letters, and what they are written under is a symbol or a number."""
+"""No name that a student reads tells an answer: choices have letters, and what they are written under is a
+symbol or a number."""
 
 from __future__ import annotations
 
@@ -105,8 +106,14 @@ def test_a_choice_goes_by_its_number_whatever_it_is_called():
 
 def test_a_name_that_is_none_stays_what_it_is():
     assert [part_called(told, ("a", "b")) for told in ("q1", "Q2", "question_2", "q3", "q0", "c", "")] == [
-        "a", "b", "b", "q3", "q0", "c", "",
-    ]  # fmt: skip
+        "a",
+        "b",
+        "b",
+        "q3",
+        "q0",
+        "c",
+        "",
+    ]
     assert part_called("q1", ("b", "q1")) == "q1"
 
 

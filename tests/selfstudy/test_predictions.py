@@ -58,13 +58,35 @@ READ = {
         "": ["+/-", "+ ou -", "positif ou négatif", "eh?", "0", "non positif"],
     },
     wording.comparison: {
-        ">": [">", "plus grand", "plus grande que r1", "larger", "larger than r1", "> r1", "greater", "Plus Grand"],
+        ">": [
+            ">",
+            "plus grand",
+            "plus grande que r1",
+            "larger",
+            "larger than r1",
+            "> r1",
+            "greater",
+            "Plus Grand",
+        ],
         "<": ["<", "plus petit", "smaller", "plus petit que $r_1$", "less than r1", "inférieur à r1"],
         "=": ["=", "égal", "equal to r1"],
         "": ["<>", "plus grand ou plus petit", "12", "eh?"],
     },
     wording.quadrant: {
-        4: ["4", "IV", "iv", "4e", "4ème", "4th", "quatrième", "fourth", "Q4", "quadrant 4", "le 4e quadrant", "4.0"],
+        4: [
+            "4",
+            "IV",
+            "iv",
+            "4e",
+            "4ème",
+            "4th",
+            "quatrième",
+            "fourth",
+            "Q4",
+            "quadrant 4",
+            "le 4e quadrant",
+            "4.0",
+        ],
         1: ["1", "I", "1er", "premier", "first", "the first quadrant", "1st", "un", "one"],
         None: ["5", "0", "V", "1 ou 2", "eh?", "45°"],
     },
@@ -79,7 +101,7 @@ READ = {
         False: ["non", "no", "Faux", "false", False],
         None: ["eh?", "oui et non", "1"],
     },
-}  # fmt: skip
+}
 
 
 @each_row("reader", READ)
@@ -126,7 +148,8 @@ RATES = ("rad/s", "mm/s", "rad/s^2", "mm/s^2")
 
 @every_exercise
 def test_only_what_a_body_or_a_point_has_is_predicted(name):
-    """No ratio, no coefficient, no count, no length on paper; a question itself only where it is a choice that the variants decide."""
+    """No ratio, no coefficient, no count, no length on paper; a question itself only where it is a choice
+    that the variants decide."""
     exercise = COURSE[name]
     for seed in range(1, 21):
         variant = exercise.variant(seed, "en")
@@ -163,7 +186,8 @@ def test_a_length_that_is_predicted_does_not_hang_on_how_fast_the_mechanism_runs
 
 @every_exercise
 def test_what_is_compared_with_a_bar_stands_in_the_figure_beside_it(name):
-    """It moves with the driver, so the figure is of one instant and shows its length; efforts are compared by reason."""
+    """It moves with the driver, so the figure is of one instant and shows its length; efforts are compared by
+    reason."""
     exercise = COURSE[name]
     variant = exercise.variant(3, "en")
     for one in predictions.before_answers(variant):
@@ -220,7 +244,8 @@ def test_a_prediction_is_compared_only_when_its_answer_is_right(here):
     assert "You said" in str(session.check({"theta4": f"{right:.4f}"}))
 
 
-#: Counts alone, words alone, and bars that are to be found: nothing here is told by a figure or by reason before it is computed.
+#: Counts alone, words alone, and bars that are to be found: nothing here is told by a figure or by reason
+#: before it is computed.
 NOTHING_TO_PREDICT = {
     "crank_rocker_design",
     "joint_graph",
@@ -255,7 +280,11 @@ def test_something_not_asked_cannot_be_predicted(here):
 
 
 def test_lessons_compare_predictions_with_what_came_out():
-    said = str(coursework.compare({"a": 2, "b": None, "c": True, "d": "x"}, {"a": 2.1, "b": 5, "c": False, "d": 1}, "en"))  # fmt: skip
+    said = str(
+        coursework.compare(
+            {"a": 2, "b": None, "c": True, "d": "x"}, {"a": 2.1, "b": 5, "c": False, "d": 1}, "en"
+        )
+    )
     assert said.splitlines() == [
         "- ✓ a: predicted 2, found 2.1",
         "- · b: no prediction, found 5",
@@ -265,12 +294,30 @@ def test_lessons_compare_predictions_with_what_came_out():
 
 
 AGREE = [
-    ("non", False, True), ("oui", False, False), ("Vrai", True, True), ("True", True, True), (True, True, True),
-    ("eh?", False, False), ("2,3", 2.3, True), ("140 mm", 140.0, True), ("0,14 m", 140.0, True), ("deux", 2, True),
-    ("2 fois", 2, True), ("0", 0, True), (0.01, 0, True), (1, 0, False), ("5°", 0, True), ("360°", 0, True),
-    ("20°", 0, False), (np.float64(2.2), 2.3, True), ("II", "II", True), ("ii", "II", True), ("I", "II", False),
-    (2, 2.5, False), ("+/-", 1, False),
-]  # fmt: skip
+    ("non", False, True),
+    ("oui", False, False),
+    ("Vrai", True, True),
+    ("True", True, True),
+    (True, True, True),
+    ("eh?", False, False),
+    ("2,3", 2.3, True),
+    ("140 mm", 140.0, True),
+    ("0,14 m", 140.0, True),
+    ("deux", 2, True),
+    ("2 fois", 2, True),
+    ("0", 0, True),
+    (0.01, 0, True),
+    (1, 0, False),
+    ("5°", 0, True),
+    ("360°", 0, True),
+    ("20°", 0, False),
+    (np.float64(2.2), 2.3, True),
+    ("II", "II", True),
+    ("ii", "II", True),
+    ("I", "II", False),
+    (2, 2.5, False),
+    ("+/-", 1, False),
+]
 
 
 @each_row(("guess", "value", "agrees"), AGREE)

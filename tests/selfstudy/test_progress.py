@@ -1,4 +1,5 @@
-"""Progress is kept whole, over all exercises and notebooks; what was missed comes again, and what comes next is said plainly."""
+"""Progress is kept whole, over all exercises and notebooks; what was missed comes again, and what comes next
+is said plainly."""
 
 from __future__ import annotations
 
@@ -86,10 +87,18 @@ def test_what_a_reader_does_not_know_it_keeps():
 
 @each_row(
     "text",
-    ["", "[]", "{}", '{"format": "x", "version": 1, "entries": []}', '{"format": "coursework progress", "version": 1, "entries": [{}]}',
-     '{"format": "coursework progress", "version": 1, "entries": [{"at": "2026-01-01", "exercise": "x", "seed": 1, "part": "a", "what": "hint"}]}',
-     '{"format": "coursework progress", "version": 1, "entries": [{"at": "2026-01-01T00:00:00Z", "exercise": "x", "seed": -1, "part": "a", "what": "hint"}]}'],
-)  # fmt: skip
+    [
+        "",
+        "[]",
+        "{}",
+        '{"format": "x", "version": 1, "entries": []}',
+        '{"format": "coursework progress", "version": 1, "entries": [{}]}',
+        '{"format": "coursework progress", "version": 1, "entries": [{"at": "2026-01-01", "exercise": '
+        '"x", "seed": 1, "part": "a", "what": "hint"}]}',
+        '{"format": "coursework progress", "version": 1, "entries": [{"at": "2026-01-01T00:00:00Z", '
+        '"exercise": "x", "seed": -1, "part": "a", "what": "hint"}]}',
+    ],
+)
 def test_what_is_no_progress_is_refused(text):
     with pytest.raises(NotProgress):
         Progress.read(text)
@@ -350,7 +359,8 @@ def test_a_site_may_keep_what_a_notebook_keeps(tmp_path):
 
 
 def test_a_right_answer_shows_of_each_slip_that_it_was_not_made():
-    """Angular velocities of a linkage whose triangle has sides 3, 4 and 5: -1 rad/s, of which a slip of the sign gives 1."""
+    """Angular velocities of a linkage whose triangle has sides 3, 4 and 5: -1 rad/s, of which a slip of the
+    sign gives 1."""
     exercise = COURSE["four_bar_motion"]
     given = {
         "r1": 80,

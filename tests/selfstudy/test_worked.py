@@ -1,4 +1,5 @@
-"""Worked examples fade: whole, with blanks, bare; what is left is marked, and told apart from what is told."""
+"""Worked examples fade: whole, with blanks, bare; what is left is marked, and told apart from what is
+told."""
 
 from __future__ import annotations
 

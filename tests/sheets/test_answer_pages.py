@@ -149,7 +149,8 @@ def written(value):
 
 
 def as_found(part, reference):
-    """What a page that is filled in rightly says of a part: the number of each row, the ticked cases, the words."""
+    """What a page that is filled in rightly says of a part: the number of each row, the ticked cases, the
+    words."""
     if part.sort.field == "number":
         return [written(value) for value in np.ravel(reference).tolist()]
     if hasattr(part.sort, "components"):
@@ -176,9 +177,15 @@ def test_what_a_page_says_rightly_is_marked_as_right(name, unit):
         ("complex", 3 - 4j, ["3", "-4"], "ohm", "(3 - 4i) ohm"),
         ("vector", np.array([1.0, -2, 3]), ["1", "-2", "3"], "V", "(1 ; -2 ; 3) V"),
         ("matrix", np.array([[1.5, -2], [3, 4]]), ["1.5", "-2", "3", "4"], "mm", "[[1.5 ; -2]; [3 ; 4]] mm"),
-        ("twist", np.array([1.0, 0, -2]), ["1", "0", "-2"], "mm/s", "vx = 1 mm/s; vy = 0 mm/s; wz = -2 rad/s"),
+        (
+            "twist",
+            np.array([1.0, 0, -2]),
+            ["1", "0", "-2"],
+            "mm/s",
+            "vx = 1 mm/s; vy = 0 mm/s; wz = -2 rad/s",
+        ),
     ],
-)  # fmt: skip
+)
 def test_coordinates_are_joined_as_their_kind_reads_them(kind, reference, found, unit, answer):
     sort = kind_of(kind)
     part = coursework.model.Part("x", unit=unit, kind=kind, id="x")

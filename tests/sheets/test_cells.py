@@ -50,8 +50,10 @@ def test_a_matrix_has_a_group_for_each_row_and_a_spatial_torsor_one_for_each_col
     twist = COURSE["joint_twist"].variant(1).parts
     groups = [cells_of(COURSE["joint_twist"].variant(1), part) for part in twist if part.kind == "twist"]
     assert [[{cell.unit for cell in group} for group in one] for one in groups] == [
-        [{"rad/s"}, {"mm/s"}], [{"rad/s"}, {"mm/s"}], [{"rad/s", "mm/s"}],
-    ]  # fmt: skip
+        [{"rad/s"}, {"mm/s"}],
+        [{"rad/s"}, {"mm/s"}],
+        [{"rad/s", "mm/s"}],
+    ]
 
 
 @pytest.mark.parametrize("lang", ["en", "fr"])
@@ -91,8 +93,11 @@ def test_the_line_wins_and_else_its_components_are_joined(texts, answer):
 def test_a_text_of_components_fills_their_boxes_and_another_stays_in_the_line():
     forms = {"b": "({} ; {})", "c": "", "d": "({} ; {})"}
     assert filled_cells({"b": "(1 ;  ; 2)", "c": "(1 ; 2)", "d": "(1; -2)"}, forms) == {
-        "b": "(1 ;  ; 2)", "c": "(1 ; 2)", "d-1": "1", "d-2": "-2",
-    }  # fmt: skip
+        "b": "(1 ;  ; 2)",
+        "c": "(1 ; 2)",
+        "d-1": "1",
+        "d-2": "-2",
+    }
 
 
 @each_row("text", ["1,5; 2,5; 3,5", "(1,5 ; 2,5 ; 3,5)", "vx = 1,5; vy = 2,5; wz = 3,5", "1.5, 2.5, 3.5"])

@@ -14,7 +14,8 @@ from coursework.sheets.sheet import AnswerSheet
 COURSE = coursework.open_course()
 _APART = re.compile(r"\$\$.*?\$\$|\$[^$]*\$|`[^`]*`|\]\([^)]*\)", re.DOTALL)
 _IN_PYTHON = re.compile(
-    r"(?<![\w\\])(?:[^\W_]+(?:_[^\W_]+)+|(?:alpha|beta|gamma|delta|epsilon|theta|phi|psi|omega)\d*|[A-Za-z]{1,3}\d+)(?!\w)"
+    r"(?<![\w\\])(?:[^\W_]+(?:_[^\W_]+)+|(?:alpha|beta|gamma|delta|epsilon|theta|phi|psi|omega)\d*"
+    r"|[A-Za-z]{1,3}\d+)(?!\w)"
 )
 
 

@@ -1,4 +1,5 @@
-"""What is printed beside a question agrees with it: units in the order that is asked, drawn points within the box."""
+"""What is printed beside a question agrees with it: units in the order that is asked, drawn points within the
+box."""
 
 from __future__ import annotations
 
@@ -19,7 +20,8 @@ _NUMBER = re.compile(r"\\num\{([^{}]*)\}")
 
 @every_language
 def test_no_label_has_its_units_in_another_order_than_its_question(lang):
-    """A question that tells its units, and whose columns are not lettered, tells them in the label's order."""
+    """A question that tells its units, and whose columns are not lettered, tells them in the label's
+    order."""
     labels = [
         (name, question, question.unit.split(" | "))
         for name in COURSE.names

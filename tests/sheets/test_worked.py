@@ -136,7 +136,8 @@ NUMBERS = {
         (
             quotient,
             r"\frac{a\,\left(b + \num{1}\right)}{b\,\sin^{\num{2}}\left(\theta\right)}",
-            r"\frac{\num{3} \times \left(\num{-4} + \num{1}\right)}{\num{-4}\,\sin^{\num{2}}\left(\num{60}^{\circ}\right)}",
+            r"\frac{\num{3} \times \left(\num{-4} + "
+            r"\num{1}\right)}{\num{-4}\,\sin^{\num{2}}\left(\num{60}^{\circ}\right)}",
         ),
         (
             sums,
@@ -172,7 +173,8 @@ NUMBERS = {
         (period, r"\frac{\num{2}\,\pi}{\left|a\right|}", r"\frac{\num{2}\,\pi}{\left|\num{3}\right|}"),
         (
             sum_of_vectors,
-            r"\operatorname{atan2}\left(a\,\sin\left(\theta\right) - a;\ a\,\cos\left(\theta\right) - b\right)",
+            r"\operatorname{atan2}\left(a\,\sin\left(\theta\right) - a;\ a\,\cos\left(\theta\right) - "
+            r"b\right)",
             r"\operatorname{atan2}\left(\num{3}\,\sin\left(\num{60}^{\circ}\right) - \num{3};\ "
             r"\num{3}\,\cos\left(\num{60}^{\circ}\right) - \left(\num{-4}\right)\right)",
         ),

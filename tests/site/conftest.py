@@ -41,8 +41,8 @@ def strong_hasher():
 
 @pytest.fixture(autouse=True)
 def read_here(request, monkeypatch):
-    """Uploads are read in this process, sent to and fro as to another, which takes longer to begin than to read; tests of whole
-    commands, and those that ask for ``own_process``, read as a server does."""
+    """Uploads are read in this process, sent to and fro as to another, which takes longer to begin than to
+    read; tests of whole commands, and those that ask for ``own_process``, read as a server does."""
     if "own_process" not in request.fixturenames and not request.node.get_closest_marker("e2e"):
         monkeypatch.setattr(budgets, "confined", _sent)
 

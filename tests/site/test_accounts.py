@@ -74,8 +74,14 @@ def test_nothing_that_is_kept_gives_an_invitation_or_a_password(class_of_three):
 
 @pytest.mark.parametrize(
     ("password", "again"),
-    [("short", "short"), ("a" * 12, "a" * 12), ("x" * 100 + "abcde" * 30,) * 2, (PASSWORD, PASSWORD.upper()), ("zoé@example.org",) * 2],
-)  # fmt: skip
+    [
+        ("short", "short"),
+        ("a" * 12, "a" * 12),
+        ("x" * 100 + "abcde" * 30,) * 2,
+        (PASSWORD, PASSWORD.upper()),
+        ("zoé@example.org",) * 2,
+    ],
+)
 def test_a_password_that_will_not_do_takes_nothing_up(class_of_three, password, again):
     address = invite(class_of_three, ZOE)
     browser = class_of_three.browser()
@@ -149,8 +155,16 @@ def test_who_signs_in_goes_on_to_the_page_that_was_asked_for(class_of_three):
 
 
 @pytest.mark.parametrize(
-    "away", ["https://evil.example", "//evil.example", "/\\evil.example", "/\t/evil.example", "\\\\evil.example", "javascript:alert(1)"]
-)  # fmt: skip
+    "away",
+    [
+        "https://evil.example",
+        "//evil.example",
+        "/\\evil.example",
+        "/\t/evil.example",
+        "\\\\evil.example",
+        "javascript:alert(1)",
+    ],
+)
 def test_signing_in_leads_nowhere_else(class_of_three, away):
     join(class_of_three, ZOE)
     told = {"login": "zoé@example.org", "password": PASSWORD, "after": away}

@@ -1,4 +1,5 @@
-"""The page of the evening after an exam: a change is seen before it counts, kept with who made it, and taken back."""
+"""The page of the evening after an exam: a change is seen before it counts, kept with who made it, and taken
+back."""
 
 import re
 
@@ -137,7 +138,8 @@ def test_nothing_waits_in_a_question_that_counts_for_nobody(desk):
 
 
 def test_what_a_wider_margin_makes_right_waits_no_more(tmp_path):
-    """Of two answers near the margin, the one that the wider margin takes in; both are back when it is taken back."""
+    """Of two answers near the margin, the one that the wider margin takes in; both are back when it is taken
+    back."""
     desk = DeskClass(f"sqlite:///{tmp_path}/desk.db", {})
     desk.hand_in({"Ada": {"rA": desk.at_margin("rA", 1.3)}, "Bo": {"rA": desk.at_margin("rA", 1.8)}})
 

@@ -1,4 +1,5 @@
-"""An anonymous class on the desk: codes in place of names on queue, class page and student page, until nothing waits."""
+"""An anonymous class on the desk: codes in place of names on queue, class page and student page, until
+nothing waits."""
 
 import io
 import re

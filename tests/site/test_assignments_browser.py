@@ -1,4 +1,5 @@
-"""Handing in by a real browser without the site's script; with it: test_in_browser_flows.py and test_keeping_browser.py."""
+"""Handing in by a real browser without the site's script; with it: test_in_browser_flows.py and
+test_keeping_browser.py."""
 
 from dataclasses import replace
 

@@ -1,4 +1,5 @@
-"""What a request says of itself and is not: how long it is, in what it is written; limits hold before memory is spent."""
+"""What a request says of itself and is not: how long it is, in what it is written; limits hold before memory
+is spent."""
 
 import socket
 from urllib.parse import urlsplit
@@ -24,9 +25,15 @@ def head(class_, url, path, *more, name=ZOE):
     """The head of a form's request, sealed, as a browser of ``name`` sends it."""
     cookie = signed_in(class_.site.store, class_.ids[name])
     lines = (
-        f"POST {path} HTTP/1.1", f"Host: {urlsplit(url).netloc}", "Connection: close",
-        f"Cookie: {cookie_name(False)}={cookie}", f"X-Seal: {seal_of(class_.site, cookie)}", *more, "", "",
-    )  # fmt: skip
+        f"POST {path} HTTP/1.1",
+        f"Host: {urlsplit(url).netloc}",
+        "Connection: close",
+        f"Cookie: {cookie_name(False)}={cookie}",
+        f"X-Seal: {seal_of(class_.site, cookie)}",
+        *more,
+        "",
+        "",
+    )
     return "\r\n".join(lines).encode()
 
 
@@ -55,7 +62,8 @@ def in_pieces(data):
 
 @each_row("length", [(), ("Content-Length: 200",)])
 def test_a_form_in_pieces_is_refused_whatever_length_it_says(class_, length):
-    """With both a length and pieces, servers go by the pieces: 300 MB that were said to be 200 bytes took 1.2 GB."""
+    """With both a length and pieces, servers go by the pieces: 300 MB that were said to be 200 bytes took 1.2
+    GB."""
     field = b'--x\r\nContent-Disposition: form-data; name="file"; filename="a.csv"\r\n\r\n'
     pieces = [in_pieces(field), *[in_pieces(b"a" * MEGABYTE)] * 30, in_pieces(b"\r\n--x--\r\n"), b"0\r\n\r\n"]
     told = ("Content-Type: multipart/form-data; boundary=x", "Transfer-Encoding: chunked", *length)

@@ -1,4 +1,5 @@
-"""What one person may make the site do: bodies, files and requests within stated budgets, refused before they are read."""
+"""What one person may make the site do: bodies, files and requests within stated budgets, refused before they
+are read."""
 
 import json
 import re
@@ -67,9 +68,15 @@ def head(class_, url, path, length, kind="application/x-www-form-urlencoded", na
     """The head of a form's request as a browser of somebody sends it."""
     cookie = signed_in(class_.site.store, class_.ids[name])
     lines = (
-        f"POST {path} HTTP/1.1", f"Host: {urlsplit(url).netloc}", f"Content-Type: {kind}", f"Content-Length: {length}",
-        f"Cookie: {cookie_name(False)}={cookie}", f"X-Seal: {seal_of(class_.site, cookie)}", "", "",
-    )  # fmt: skip
+        f"POST {path} HTTP/1.1",
+        f"Host: {urlsplit(url).netloc}",
+        f"Content-Type: {kind}",
+        f"Content-Length: {length}",
+        f"Cookie: {cookie_name(False)}={cookie}",
+        f"X-Seal: {seal_of(class_.site, cookie)}",
+        "",
+        "",
+    )
     return "\r\n".join(lines).encode()
 
 
@@ -143,7 +150,8 @@ def test_who_took_much_of_a_processor_waits_and_nobody_else(class_of_three):
 
 
 def test_who_took_much_of_a_processor_still_answers_and_hands_in_a_paper(class_of_three):
-    """For papers one has an allowance apart; saving and handing in are refused to nobody even where that is spent."""
+    """For papers one has an allowance apart; saving and handing in are refused to nobody even where that is
+    spent."""
     number = dealt(class_of_three)
     texts = right(class_of_three, ZOE)
     browser = class_of_three.browser(ZOE)
@@ -268,7 +276,8 @@ def test_a_file_that_takes_too_long_is_ended_and_told(class_of_three, monkeypatc
 
 @pytest.mark.e2e
 def test_one_person_uploads_one_file_at_a_time_and_others_are_answered(class_of_three, monkeypatch):
-    """Ten at once took five gigabytes, and every place of the process: another student's page did not come."""
+    """Ten at once took five gigabytes, and every place of the process: another student's page did not
+    come."""
     number = dealt(class_of_three)
     at_once, most, lock, go_on = 0, 0, threading.Lock(), threading.Event()
 
@@ -291,9 +300,13 @@ def test_one_person_uploads_one_file_at_a_time_and_others_are_answered(class_of_
             cookies = dict(browser.cookies)
             files = {"file": ("a.csv", HEADER.encode())}
             return httpx.post(
-                f"{url}/assignments/{number}/file", files=files, cookies=cookies, headers={"x-seal": browser.seal},
-                timeout=PATIENCE, trust_env=False,
-            ).status_code  # fmt: skip
+                f"{url}/assignments/{number}/file",
+                files=files,
+                cookies=cookies,
+                headers={"x-seal": browser.seal},
+                timeout=PATIENCE,
+                trust_env=False,
+            ).status_code
 
         uploads = [threads.submit(upload, k) for k in range(10)]
         try:
@@ -355,9 +368,14 @@ def test_what_is_over_the_budget_of_a_link_is_refused_by_its_head_alone(linked):
     with served(linked) as url:
         for address in link_addresses(linked, path):
             lines = (
-                f"POST {address} HTTP/1.1", f"Host: {urlsplit(url).netloc}", "Content-Type: application/x-www-form-urlencoded",
-                f"Content-Length: {BOXES.largest + 1}", f"Cookie: {cookies}", "", "",
-            )  # fmt: skip
+                f"POST {address} HTTP/1.1",
+                f"Host: {urlsplit(url).netloc}",
+                "Content-Type: application/x-www-form-urlencoded",
+                f"Content-Length: {BOXES.largest + 1}",
+                f"Cookie: {cookies}",
+                "",
+                "",
+            )
             told[address] = answered(url, "\r\n".join(lines).encode()).split()[1]
     assert set(told.values()) == {b"413"}
 

@@ -1,5 +1,5 @@
-"""Boxes of components in Chromium: they and the line follow each other, what is pasted is spread, without a script they are joined,
-and a screen reader tells them apart."""
+"""Boxes of components in Chromium: they and the line follow each other, what is pasted is spread, without a
+script they are joined, and a screen reader tells them apart."""
 
 import pytest
 from site_browser import desk_at, told, windows

@@ -1,4 +1,5 @@
-"""A clock that is wrong for a moment opens no exam and closes no homework for good, on whatever process and after whatever stop."""
+"""A clock that is wrong for a moment opens no exam and closes no homework for good, on whatever process and
+after whatever stop."""
 
 import logging
 from dataclasses import replace

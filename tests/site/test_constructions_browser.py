@@ -1,4 +1,5 @@
-"""Each drawn exercise is constructed by touch from its statement alone, for full points, on a telephone and on a desk."""
+"""Each drawn exercise is constructed by touch from its statement alone, for full points, on a telephone and
+on a desk."""
 
 import constructions
 import pytest
@@ -29,7 +30,8 @@ def test_each_drawn_exercise_is_constructed_for_full_points(desk, size, lang):
     assert failed == {}
 
 
-#: A mistake that is drawn, and the words that it earns: exercise, what is done wrongly, what is said of which point.
+#: A mistake that is drawn, and the words that it earns: exercise, what is done wrongly, what is said of which
+#: point.
 MISTAKEN = [
     ("velocity_polygon", {"a": "sense", "b": (0, "direction")}, {"a": "a_sense", "b": "ba_direction"}),
     (

@@ -176,7 +176,10 @@ def test_tables_are_those_that_grade_writes(desk):
 
 
 def test_a_platforms_gradebook_comes_back_filled(desk):
-    data = "First name,Last name,Email address,Assignment: Midterm 2 (Real)\nBo,B,bo@example.org,\nAda,A,ada@example.org,\nX,Y,x@y.org,\n"
+    data = (
+        "First name,Last name,Email address,Assignment: Midterm 2 (Real)\nBo,B,bo@example.org,\n"
+        "Ada,A,ada@example.org,\nX,Y,x@y.org,\n"
+    )
     reply = send(
         desk,
         "gradebook",

@@ -1,4 +1,5 @@
-"""A drawing is stored with the draft, and stands on no page but as text: on sheets to practise and on papers."""
+"""A drawing is stored with the draft, and stands on no page but as text: on sheets to practise and on
+papers."""
 
 import json
 import re

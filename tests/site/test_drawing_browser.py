@@ -1,4 +1,5 @@
-"""The drawing surface in Chromium: by touch, mouse and keys; what is drawn is kept, and what is typed is drawn."""
+"""The drawing surface in Chromium: by touch, mouse and keys; what is drawn is kept, and what is typed is
+drawn."""
 
 import cmath
 import json
@@ -45,7 +46,8 @@ def pencil(desk):
 
 
 def test_a_coupler_curve_is_traced_by_stepping_the_crank(pencil):
-    """With compass and lines at true size: the coupler's direction at the instant shown, and P at other angles of the crank."""
+    """With compass and lines at true size: the coupler's direction at the instant shown, and P at other
+    angles of the crank."""
     hand = pencil("coupler_curve", "desk")
     given = hand.variant.given
     O, side = 200 + 150j, 1 if given["mode"] == "open" else -1
@@ -242,11 +244,15 @@ TYPE = """answers => { for (const [name, text] of Object.entries(answers)) {
   box.value = text;
   box.dispatchEvent(new Event("input", { bubbles: true }));
 } }"""
-#: Pairs of names in a drawing that lie on each other: of a glyph's box, which is taller than letters, a third is white.
+#: Pairs of names in a drawing that lie on each other: of a glyph's box, which is taller than letters, a third
+#: is white.
 OVERLAPPING = """() => {
-  const names = Array.from(document.querySelectorAll("[id$=drawing-ink] > g:nth-child(2) text"), one => [one.textContent, one.getBoundingClientRect()]);
-  const meet = (a, b) => Math.min(a.right, b.right) - Math.max(a.left, b.left) > 1 && Math.min(a.bottom, b.bottom) - Math.max(a.top, b.top) > a.height / 3;
-  return names.flatMap(([name, a], k) => names.slice(0, k).filter(([, b]) => meet(a, b)).map(([other]) => `${name} on ${other}`));
+  const texts = document.querySelectorAll("[id$=drawing-ink] > g:nth-child(2) text");
+  const names = Array.from(texts, one => [one.textContent, one.getBoundingClientRect()]);
+  const meet = (a, b) => Math.min(a.right, b.right) - Math.max(a.left, b.left) > 1
+    && Math.min(a.bottom, b.bottom) - Math.max(a.top, b.top) > a.height / 3;
+  const near = (k, a) => names.slice(0, k).filter(([, b]) => meet(a, b));
+  return names.flatMap(([name, a], k) => near(k, a).map(([other]) => `${name} on ${other}`));
 }"""
 
 
@@ -350,13 +356,15 @@ def test_a_page_that_is_handed_out_draws_alone(desk, tmp_path):
         '{"v": 1, "items": [{"k": "__proto__", "id": 1}, {"k": "point", "id": 2, "n": "__proto__"}]}',
         '{"v": 1, "items": 7}',
         "[[[[",
-        '{"v": 1, "items": [null, {"k": "body", "id": 1, "x": "<b>", "y": {}, "n": "<img src=x onerror=alert(1)>"}]}',
+        '{"v": 1, "items": [null, {"k": "body", "id": 1, "x": "<b>", "y": {}, "n": "<img src=x '
+        'onerror=alert(1)>"}]}',
     ],
 )
 def test_what_is_no_drawing_stops_no_page(pencil, text):
     hand = pencil("velocity_polygon")
     hand.page.evaluate(
-        "text => { const box = document.querySelector('[name=a-drawing]'); box.value = text; document.dispatchEvent(new Event('answers:filled')); }",
+        "text => { const box = document.querySelector('[name=a-drawing]'); box.value = text; "
+        "document.dispatchEvent(new Event('answers:filled')); }",
         text,
     )
     hand.dot(30 + 20j, "p")

@@ -1,4 +1,5 @@
-"""Each known mistake of a construction is drawn by a hand that errs once, and named; a hand that does not err has every point."""
+"""Each known mistake of a construction is drawn by a hand that errs once, and named; a hand that does not err
+has every point."""
 
 import pytest
 from paper_hand import PaperHand, one_mistake_each
@@ -10,14 +11,46 @@ DRAWN = [name for name in coursework.open_course().names if coursework.open_cour
 
 #: Mistakes about what is read off a drawing, computed from it or known before: no line of it is wrong.
 NOT_DRAWN = {
-    "lengths_exchanged", "scale_forgotten", "value_sense", "sliding_sense", "ram_sense", "V_B_sense", "V_C_sense", "a_B_sense",
-    "a_C_sense", "radii_exchanged", "crank_for_rod", "crank_for_guide", "omega3_of_V_B", "omega4_of_A2", "alpha3_of_a_B",
-    "alpha4_of_a_B", "alpha4_of_A4", "rate_of_absolute_velocity", "nothing_known_of_B", "nothing_known_of_BA",
-    "nothing_known_of_a_bar", "nothing_known_of_a_path", "nothing_known_of_sliding", "A4_moves_with_the_crank",
-    "A1_and_B2_of_one_velocity", "no_slip_gives_the_length", "normal_part_unknown", "tangential_part_unknown",
-    "direction_not_used", "velocities_not_used", "read_backwards", "clockwise", "bars_exchanged", "of_the_other_point",
-    "Q_inverse", "advance_and_return_exchanged", "advantage_inverse", "angle_at_C", "swing_once",
-}  # fmt: skip
+    "lengths_exchanged",
+    "scale_forgotten",
+    "value_sense",
+    "sliding_sense",
+    "ram_sense",
+    "V_B_sense",
+    "V_C_sense",
+    "a_B_sense",
+    "a_C_sense",
+    "radii_exchanged",
+    "crank_for_rod",
+    "crank_for_guide",
+    "omega3_of_V_B",
+    "omega4_of_A2",
+    "alpha3_of_a_B",
+    "alpha4_of_a_B",
+    "alpha4_of_A4",
+    "rate_of_absolute_velocity",
+    "nothing_known_of_B",
+    "nothing_known_of_BA",
+    "nothing_known_of_a_bar",
+    "nothing_known_of_a_path",
+    "nothing_known_of_sliding",
+    "A4_moves_with_the_crank",
+    "A1_and_B2_of_one_velocity",
+    "no_slip_gives_the_length",
+    "normal_part_unknown",
+    "tangential_part_unknown",
+    "direction_not_used",
+    "velocities_not_used",
+    "read_backwards",
+    "clockwise",
+    "bars_exchanged",
+    "of_the_other_point",
+    "Q_inverse",
+    "advance_and_return_exchanged",
+    "advantage_inverse",
+    "angle_at_C",
+    "swing_once",
+}
 
 
 @pytest.mark.parametrize("exercise", sampled(DRAWN))

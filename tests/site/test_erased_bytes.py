@@ -1,4 +1,5 @@
-"""What is erased is in no byte of any file: neither in the log of SQLite, nor in free pages, nor in what platforms' links keep."""
+"""What is erased is in no byte of any file: neither in the log of SQLite, nor in free pages, nor in what
+platforms' links keep."""
 
 import base64
 import json

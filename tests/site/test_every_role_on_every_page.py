@@ -1,4 +1,5 @@
-"""Every page of the site asked for, and every form sent, by each role: against a table that is written here and nowhere else.
+"""Every page of the site asked for, and every form sent, by each role: against a table that is written here
+and nowhere else.
 
 And what assistants of a group are shown, or do, of a student of another group: nothing.
 """
@@ -33,25 +34,57 @@ RANK = {None: 0, ZOE: 1, MAX: 1, PAUL: 2, CARA: 2, NINA: 2, OLAF: 1, IVY: 3, TEA
 
 #: From which role on a page is shown, and a form of it taken; none where it takes none.
 WHO = {
-    "/": (NOBODY, None), "/service-worker.js": (NOBODY, None), "/offline": (NOBODY, None), "/accessibility": (NOBODY, None), "/static/{name}": (NOBODY, None), "/language": (NOBODY, NOBODY), "/who": (NOBODY, NOBODY),
-    "/sign-in": (NOBODY, NOBODY), "/invitation/{token}": (NOBODY, NOBODY),
-    **dict.fromkeys(("/practice", "/assignments", "/account/data", "/progress/progress.json"), (STUDENTS, None)),
+    "/": (NOBODY, None),
+    "/service-worker.js": (NOBODY, None),
+    "/offline": (NOBODY, None),
+    "/accessibility": (NOBODY, None),
+    "/static/{name}": (NOBODY, None),
+    "/language": (NOBODY, NOBODY),
+    "/who": (NOBODY, NOBODY),
+    "/sign-in": (NOBODY, NOBODY),
+    "/invitation/{token}": (NOBODY, NOBODY),
+    **dict.fromkeys(
+        ("/practice", "/assignments", "/account/data", "/progress/progress.json"), (STUDENTS, None)
+    ),
     **dict.fromkeys(("/sign-out", "/account", "/progress"), (STUDENTS, STUDENTS)),
-    "/lessons/{lesson}": (STUDENTS, STUDENTS), "/lessons/{lesson}/figures/{figure}": (STUDENTS, None), "/lessons/{lesson}/steps/{steps}": (STUDENTS, None),
-    "/practice/{exercise}": (STUDENTS, STUDENTS), "/practice/{exercise}/{seed}/motion": (STUDENTS, None),
+    "/lessons/{lesson}": (STUDENTS, STUDENTS),
+    "/lessons/{lesson}/figures/{figure}": (STUDENTS, None),
+    "/lessons/{lesson}/steps/{steps}": (STUDENTS, None),
+    "/practice/{exercise}": (STUDENTS, STUDENTS),
+    "/practice/{exercise}/{seed}/motion": (STUDENTS, None),
     "/explore/{exercise}": (STUDENTS, None),
-    **{f"/practice/{{exercise}}/{{seed}}{end}": (STUDENTS, STUDENTS) for end in ("", "/draft", "/read", "/solution")},
-    **{f"/assignments/{{number:int}}{end}": (STUDENTS, STUDENTS) for end in ("", "/start", "/keep", "/hand-in", "/file")},
+    **{
+        f"/practice/{{exercise}}/{{seed}}{end}": (STUDENTS, STUDENTS)
+        for end in ("", "/draft", "/read", "/solution")
+    },
+    **{
+        f"/assignments/{{number:int}}{end}": (STUDENTS, STUDENTS)
+        for end in ("", "/start", "/keep", "/hand-in", "/file")
+    },
     **{
         f"/assignments/{{number:int}}{end}": (STUDENTS, None)
         for end in ("/read-back", "/feedback", "/receipts/{code}", "/receipts/{code}.{ending}", "/{file}")
     },
-    "/desk": (ASSISTANTS, None), "/desk/semester": (ASSISTANTS, None), "/desk/semester.csv": (ASSISTANTS, None), "/desk/receipts": (ASSISTANTS, None),
+    "/desk": (ASSISTANTS, None),
+    "/desk/semester": (ASSISTANTS, None),
+    "/desk/semester.csv": (ASSISTANTS, None),
+    "/desk/receipts": (ASSISTANTS, None),
     **{
         f"/desk/{{assignment:int}}{end}": (ASSISTANTS, None)
         for end in (
-            "", "/news", "/figure", "/questions", "/question", "/report", "/report.pdf", "/queue/watch", "/files",
-            "/files/{file}", "/feedback", "/scans/picture", "/scans/crop",
+            "",
+            "/news",
+            "/figure",
+            "/questions",
+            "/question",
+            "/report",
+            "/report.pdf",
+            "/queue/watch",
+            "/files",
+            "/files/{file}",
+            "/feedback",
+            "/scans/picture",
+            "/scans/crop",
         )
     },
     **{
@@ -59,10 +92,18 @@ WHO = {
         for end in ("/queue", "/student", "/rejected", "/gradebook", "/scans/queue")
     },
     "/desk/{assignment:int}/scans": (ASSISTANTS, INSTRUCTORS),
-    **{f"/desk/{{assignment:int}}{end}": (INSTRUCTORS, INSTRUCTORS) for end in ("/answers", "/roster", "/regrade", "/after")},
-    "/desk/{assignment:int}/changes.csv": (INSTRUCTORS, None), "/desk/issued": (INSTRUCTORS, INSTRUCTORS),
-    "/desk/lti": (INSTRUCTORS, None), "/mechanisms": (INSTRUCTORS, None), "/mechanisms/{name}": (INSTRUCTORS, INSTRUCTORS), "/desk/assignments": (INSTRUCTORS, None),
-    "/desk/assignments/new": (INSTRUCTORS, INSTRUCTORS), "/desk/assignments/dealing/{token}": (INSTRUCTORS, None),
+    **{
+        f"/desk/{{assignment:int}}{end}": (INSTRUCTORS, INSTRUCTORS)
+        for end in ("/answers", "/roster", "/regrade", "/after")
+    },
+    "/desk/{assignment:int}/changes.csv": (INSTRUCTORS, None),
+    "/desk/issued": (INSTRUCTORS, INSTRUCTORS),
+    "/desk/lti": (INSTRUCTORS, None),
+    "/mechanisms": (INSTRUCTORS, None),
+    "/mechanisms/{name}": (INSTRUCTORS, INSTRUCTORS),
+    "/desk/assignments": (INSTRUCTORS, None),
+    "/desk/assignments/new": (INSTRUCTORS, INSTRUCTORS),
+    "/desk/assignments/dealing/{token}": (INSTRUCTORS, None),
     **{
         f"/desk/assignments/{{number:int}}{end}": (INSTRUCTORS, None)
         for end in ("", "/preview", "/as/{person:int}", "/issued.json")
@@ -71,12 +112,20 @@ WHO = {
         f"/desk/assignments/{{number:int}}{end}": (INSTRUCTORS, INSTRUCTORS)
         for end in ("/publish", "/unpublish", "/extend", "/roster", "/make-up", "/sheets")
     },
-    **dict.fromkeys(("/desk/people", "/desk/people/add", "/desk/people/extra-time"), (INSTRUCTORS, INSTRUCTORS)),
-    "/desk/people/{person}": (INSTRUCTORS, None), "/desk/people/{person}/invitation": (INSTRUCTORS, INSTRUCTORS),
-    "/desk/people/{person}/separate": (INSTRUCTORS, INSTRUCTORS), "/connect/{token}": (STUDENTS, STUDENTS),
-    **{f"/desk/people{end}": (ADMINISTRATORS, ADMINISTRATORS) for end in ("/add-staff", "/{person}/role", "/{person}/erase")},
-    "/desk/people/{person}/data": (ADMINISTRATORS, None), "/desk/audit": (ADMINISTRATORS, None),
-}  # fmt: skip
+    **dict.fromkeys(
+        ("/desk/people", "/desk/people/add", "/desk/people/extra-time"), (INSTRUCTORS, INSTRUCTORS)
+    ),
+    "/desk/people/{person}": (INSTRUCTORS, None),
+    "/desk/people/{person}/invitation": (INSTRUCTORS, INSTRUCTORS),
+    "/desk/people/{person}/separate": (INSTRUCTORS, INSTRUCTORS),
+    "/connect/{token}": (STUDENTS, STUDENTS),
+    **{
+        f"/desk/people{end}": (ADMINISTRATORS, ADMINISTRATORS)
+        for end in ("/add-staff", "/{person}/role", "/{person}/erase")
+    },
+    "/desk/people/{person}/data": (ADMINISTRATORS, None),
+    "/desk/audit": (ADMINISTRATORS, None),
+}
 SAME = "zzz the same words"  #: that both students wrote, and nobody can read
 
 
@@ -113,9 +162,15 @@ class Staffed(Filled):
             insert_submission(connection, self.number, rows, source="late.csv", received_at=self.at)
             for k, name in enumerate((ZOE, MAX)):
                 row = {
-                    "assignment_id": self.number, "page": f"{k:016x}-0001", "file": f"{name}.pdf", "number": 1, "student": name,
-                    "kept": {}, "picture": "AAAA", "came": self.at,
-                }  # fmt: skip
+                    "assignment_id": self.number,
+                    "page": f"{k:016x}-0001",
+                    "file": f"{name}.pdf",
+                    "number": 1,
+                    "student": name,
+                    "kept": {},
+                    "picture": "AAAA",
+                    "came": self.at,
+                }
                 connection.execute(insert(scanned).values(row))
         mark_new(self.site.course, self.site.store, self.number)
 
@@ -215,8 +270,12 @@ def test_no_page_shows_an_assistant_a_student_of_another_group(site):
                 "person": str(site.ids[MAX]),
             }
             address = filled(page.path, places)
-            for query in ("", f"?name={MAX}&student={MAX}&exercise={EXERCISE}&seed={SEEDS[MAX]}&part={site.parts[1]}&why=rejected",
-                          f"?exercise={EXERCISE}&part={site.parts[0]}&verdict=unreadable", f"?code={site.receipts[MAX]}"):  # fmt: skip
+            for query in (
+                "",
+                f"?name={MAX}&student={MAX}&exercise={EXERCISE}&seed={SEEDS[MAX]}&part={site.parts[1]}&why=rejected",
+                f"?exercise={EXERCISE}&part={site.parts[0]}&verdict=unreadable",
+                f"?code={site.receipts[MAX]}",
+            ):
                 for headers in ({}, {"hx-request": "true"}):
                     reply = site.browser(CARA).get(address + query, headers=headers)
                     text = text_of(reply).replace(f'value="{site.receipts[MAX]}"', "")

@@ -1,4 +1,5 @@
-"""Explore: numbers of the address, bounded; nothing of a running assignment; links that tell nothing before it is answered."""
+"""Explore: numbers of the address, bounded; nothing of a running assignment; links that tell nothing before
+it is answered."""
 
 import re
 from dataclasses import replace
@@ -71,10 +72,30 @@ def test_what_does_not_close_is_a_page_that_says_by_how_much(browser_of):
 
 
 HOSTILE = [
-    "r1=nan", "r1=inf", "r1=-1e308", "r1=1e999", "r1=" + "9" * 6000, "r1=0", "r1=", "r1", "r1=1&r1=2", "r1[]=3", "mode=evil",
-    "theta2=" + quote("<script>alert(1)</script>"), "r2=" + quote("' or 1=1 --"), "r3=%00", "r4=%ff%fe", "r1=" + quote("7０"),
-    "r1=__import__('os')", "lang=xx", "&".join(f"x{k}=1" for k in range(500)), "theta2=1e-320", "theta2=-0", "alpha2=45e", "r1=1,5",
-]  # fmt: skip
+    "r1=nan",
+    "r1=inf",
+    "r1=-1e308",
+    "r1=1e999",
+    "r1=" + "9" * 6000,
+    "r1=0",
+    "r1=",
+    "r1",
+    "r1=1&r1=2",
+    "r1[]=3",
+    "mode=evil",
+    "theta2=" + quote("<script>alert(1)</script>"),
+    "r2=" + quote("' or 1=1 --"),
+    "r3=%00",
+    "r4=%ff%fe",
+    "r1=" + quote("7０"),
+    "r1=__import__('os')",
+    "lang=xx",
+    "&".join(f"x{k}=1" for k in range(500)),
+    "theta2=1e-320",
+    "theta2=-0",
+    "alpha2=45e",
+    "r1=1,5",
+]
 
 
 @each_row("query", HOSTILE)

@@ -102,6 +102,7 @@ def test_a_finger_drags_the_crank_of_explore(window):
 
 
 #: Where pivot and pin of the crank are on the screen, px.
-_PLACE = """(() => { const n = document.querySelector("#explored svg"), c = n.dataset.crank.split(" ").map(Number);
+_PLACE = """(() => { const n = document.querySelector("#explored svg");
+  const c = n.dataset.crank.split(" ").map(Number);
   const at = new DOMPoint(c[%d], c[%d]).matrixTransform(n.getScreenCTM()); return [at.x, at.y]; })()"""
 _PIVOT, _PIN = _PLACE % (0, 1), _PLACE % (2, 3)

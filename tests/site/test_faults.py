@@ -1,4 +1,5 @@
-"""Faults of machines and lines: what was acknowledged is kept, nothing counts twice, and a student reads a sentence."""
+"""Faults of machines and lines: what was acknowledged is kept, nothing counts twice, and a student reads a
+sentence."""
 
 import threading
 from datetime import timedelta

@@ -1,4 +1,5 @@
-"""Groups of a class: pages, statistics and exports of one group, and what an assistant of a group sees and does."""
+"""Groups of a class: pages, statistics and exports of one group, and what an assistant of a group sees and
+does."""
 
 import csv
 import html
@@ -38,9 +39,14 @@ def test_class_questions_and_files_are_of_the_group_that_is_chosen(site):
     """An instructor chooses; an assistant sees what is theirs, chosen or not."""
     wrong = []
     for name, group, shown in (
-        (TEACHER, "", {ZOE, MAX}), (TEACHER, "TD 1", {ZOE}), (TEACHER, "td 2", {MAX}), (TEACHER, "td 9", set()),
-        (CARA, "", {ZOE}), (CARA, "td 1", {ZOE}), (CARA, "td 2", set()),
-    ):  # fmt: skip
+        (TEACHER, "", {ZOE, MAX}),
+        (TEACHER, "TD 1", {ZOE}),
+        (TEACHER, "td 2", {MAX}),
+        (TEACHER, "td 9", set()),
+        (CARA, "", {ZOE}),
+        (CARA, "td 1", {ZOE}),
+        (CARA, "td 2", set()),
+    ):
         browser = site.browser(name)
         for end in (
             "",
@@ -161,12 +167,23 @@ def test_an_invitation_of_an_assistant_states_their_groups(tmp_path):
 
 def test_a_record_among_some_students_knows_nobody_else():
     content = {
-        "format": 1, "roster": True, "students": {"Ann": {"number": "1"}, "Bo": {"number": "2"}},
+        "format": 1,
+        "roster": True,
+        "students": {"Ann": {"number": "1"}, "Bo": {"number": "2"}},
         "issued": [
-            {"student": name, "record": {"exercise": "x", "seed": seed, "version": 1, "parts": [{"id": "a", "points": 1}], "given": {}}}
+            {
+                "student": name,
+                "record": {
+                    "exercise": "x",
+                    "seed": seed,
+                    "version": 1,
+                    "parts": [{"id": "a", "points": 1}],
+                    "given": {},
+                },
+            }
             for name, seed in (("Ann", 1), ("Bo", 2))
         ],
-    }  # fmt: skip
+    }
     part = Issued(content, "test").among({"Ann"})
     assert (part.students, part.student("Bo"), part.student("?", [("", "2")]), part.student("ann")) == (
         ("Ann",),

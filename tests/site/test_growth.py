@@ -40,7 +40,8 @@ def site(tmp_path):
 
 
 def grow(site):
-    """More students in the first assignment, then more assignments for everybody, all handed in and marked."""
+    """More students in the first assignment, then more assignments for everybody, all handed in and
+    marked."""
     variants = {name: site.variants.get(name, site.variants[ZOE]) for name in (*SEEDS, *MORE)}
     issued = [{"student": name, "record": one.record} for name, one in variants.items()]
     for title in ("midterm", *(f"week {number}" for number in range(4))):

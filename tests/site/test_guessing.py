@@ -1,4 +1,5 @@
-"""Guessing passwords: it is slow, nobody is locked out by others, and no reply says which logins there are."""
+"""Guessing passwords: it is slow, nobody is locked out by others, and no reply says which logins there
+are."""
 
 import asyncio
 import base64
@@ -44,7 +45,8 @@ def guess(a_class, times, login=LOGIN, **more):
 @pytest.mark.e2e
 @pytest.mark.parametrize("times", [12, 150])
 def test_nobody_locks_the_right_password_out(class_of_three, waits, times):
-    """From the same address: a browser that signed in before is at once in, a new one after a bounded wait."""
+    """From the same address: a browser that signed in before is at once in, a new one after a bounded
+    wait."""
     known = join(class_of_three, ZOE)
     known.fill("/sign-out")
     guess(class_of_three, times)
@@ -169,7 +171,8 @@ def test_a_form_without_its_token_counts_and_waits_nothing(class_of_three, waits
 
 
 def test_who_asks_without_end_shuts_no_known_browser_out(class_of_three):
-    """All pages of signing in that one address has were asked for: a browser that signed in before has its own."""
+    """All pages of signing in that one address has were asked for: a browser that signed in before has its
+    own."""
     known = join(class_of_three, ZOE)
     known.fill("/sign-out")
     limits, most = class_of_three.site.limits, 10
@@ -224,8 +227,9 @@ def test_many_guesses_at_once_are_no_faster_and_fill_nothing(monkeypatch):
 
 # --------------------------------------------------------------------- passwords
 
-COMMON = """password12 Password123! p@ssw0rd2024 motdepasse1 MotDePasse!! 1234567890 0987654321 12345678910 qwertyuiop azertyuiop qwertzuiop
-1qaz2wsx3edc abcdefghij aaaaaaaaaaaa abcabcabcabc 121212121212 iloveyou2024 bienvenue2026 welcome1234 soleil12345 passwordpassword azertyazerty
+COMMON = """password12 Password123! p@ssw0rd2024 motdepasse1 MotDePasse!! 1234567890
+0987654321 12345678910 qwertyuiop azertyuiop qwertzuiop 1qaz2wsx3edc abcdefghij aaaaaaaaaaaa abcabcabcabc
+121212121212 iloveyou2024 bienvenue2026 welcome1234 soleil12345 passwordpassword azertyazerty
 football2026 trustno1!!!! admin12345678 2026password2026""".split()
 FINE = [
     "a lamp by the window",

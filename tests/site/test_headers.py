@@ -1,4 +1,5 @@
-"""One policy on every response of the whole application: pages, files, refusals, faults, and the mounted service of platforms."""
+"""One policy on every response of the whole application: pages, files, refusals, faults, and the mounted
+service of platforms."""
 
 import re
 
@@ -44,9 +45,13 @@ def test_every_response_has_the_same_policy(linked):
         # What an administrator is shown of the site itself: test_who_may_what.py.
         for place in places if name is None else [one for one in places if one.startswith("/lti")]:
             for method, more in (
-                ("GET", {}), ("POST", {}), ("PUT", {}), ("HEAD", {}), ("OPTIONS", {}),
+                ("GET", {}),
+                ("POST", {}),
+                ("PUT", {}),
+                ("HEAD", {}),
+                ("OPTIONS", {}),
                 ("GET", {"headers": {"host": "evil.example"}}),
-            ):  # fmt: skip
+            ):
                 reply = browser.request(method, place, **more)
                 found = faults_of(reply, FRAMED if place.startswith("/lti/") else POLICY)
                 asked += 1
@@ -70,13 +75,18 @@ def test_the_one_script_of_a_page_in_a_frame_is_told_by_its_digest(linked):
 
     visitor = linked.visitor()
     settings = {
-        "deep_link_return_url": "https://back.example.org/return", "accept_types": ["ltiResourceLink"],
+        "deep_link_return_url": "https://back.example.org/return",
+        "accept_types": ["ltiResourceLink"],
         "accept_presentation_document_targets": ["iframe"],
-    }  # fmt: skip
+    }
     page, path = visitor.enter(
         roles=TEACHES,
-        **{f"{LTI}message_type": "LtiDeepLinkingRequest", f"{DEEP}deep_linking_settings": settings, f"{LTI}resource_link": None},
-    )  # fmt: skip
+        **{
+            f"{LTI}message_type": "LtiDeepLinkingRequest",
+            f"{DEEP}deep_linking_settings": settings,
+            f"{LTI}resource_link": None,
+        },
+    )
     reply = visitor.browser.post(path, data={"_seal": seal(page.text), "cancel": "1"})
     policy = policy_of(reply)
     assert re.fullmatch(r"'self' 'sha256-[\w+/]+='", policy["script-src"])

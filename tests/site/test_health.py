@@ -1,4 +1,5 @@
-"""The answer for a supervisor: whether the database answers and marking keeps up, for any host, with nothing else of the site."""
+"""The answer for a supervisor: whether the database answers and marking keeps up, for any host, with nothing
+else of the site."""
 
 from datetime import timedelta
 

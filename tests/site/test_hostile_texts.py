@@ -1,4 +1,5 @@
-"""Whatever a student, a roster or a platform writes, it is shown as it is: nothing of it runs, loads or breaks a page."""
+"""Whatever a student, a roster or a platform writes, it is shown as it is: nothing of it runs, loads or
+breaks a page."""
 
 import csv
 import io
@@ -29,7 +30,8 @@ pytestmark = pytest.mark.e2e
 
 
 class Hostile(Class):
-    """A student for each hostile text: it is their name, number, group and e-mail, their answers, and the name of their file."""
+    """A student for each hostile text: it is their name, number, group and e-mail, their answers, and the
+    name of their file."""
 
     def __init__(self, url, texts=ALL):
         super().__init__(url)
@@ -42,11 +44,19 @@ class Hostile(Class):
             name: {"number": f"{text} {k}", "group": text, "e-mail": f"{text}@{k}", text: text}
             for k, (name, text) in enumerate(zip(self.names, self.texts, strict=True))
         }
-        stated = {**STATED, "title": {"en": self.texts[0] + self.texts[9]}, "course": {"": self.texts[0]}, "identity": ["number", "group"]}  # fmt: skip
+        stated = {
+            **STATED,
+            "title": {"en": self.texts[0] + self.texts[9]},
+            "course": {"": self.texts[0]},
+            "identity": ["number", "group"],
+        }
         content = {
-            "format": 1, "roster": True, "assignment": stated, "students": columns,
+            "format": 1,
+            "roster": True,
+            "assignment": stated,
+            "students": columns,
             "issued": [{"student": name, "record": self.variant.record} for name in self.names],
-        }  # fmt: skip
+        }
         rows = []
         for name, text in zip(self.names, self.texts, strict=True):
             rows += [AnswerRow(name, EXERCISE, str(SEED), part, text, text) for part in parts[:3]]
@@ -74,19 +84,33 @@ class Hostile(Class):
         """The pages of the staff on which these texts stand."""
         home, first = f"/desk/{self.number}", self.variant.parts[0].id
         return [
-            "/desk", "/desk/people", "/desk/audit", "/desk/assignments", home, f"{home}/questions", f"{home}/files", f"{home}/report",
-            f"{home}/regrade", f"{home}/after", f"{home}/queue", f"{home}/queue?why=rejected", f"/desk/assignments/{self.number}",
+            "/desk",
+            "/desk/people",
+            "/desk/audit",
+            "/desk/assignments",
+            home,
+            f"{home}/questions",
+            f"{home}/files",
+            f"{home}/report",
+            f"{home}/regrade",
+            f"{home}/after",
+            f"{home}/queue",
+            f"{home}/queue?why=rejected",
+            f"/desk/assignments/{self.number}",
             f"{home}/question?{urlencode({'exercise': EXERCISE, 'part': first})}",
-            f"/desk/assignments/{self.number}/preview", "/desk/assignments/new",
-        ]  # fmt: skip
+            f"/desk/assignments/{self.number}/preview",
+            "/desk/assignments/new",
+        ]
 
     def of(self, name):
         """The pages of the staff on one student."""
         own = self.ids[name]
         return [
-            f"/desk/{self.number}/student?name={quote(name)}", f"/desk/people/{own}", f"/desk/people/{own}/erase",
+            f"/desk/{self.number}/student?name={quote(name)}",
+            f"/desk/people/{own}",
+            f"/desk/people/{own}/erase",
             f"/desk/assignments/{self.number}/as/{own}",
-        ]  # fmt: skip
+        ]
 
     def cards(self):
         """Each card of the queue."""
@@ -164,7 +188,8 @@ def watched_page(context, url, ran):
 
 @pytest.mark.slow
 def test_nothing_of_a_text_runs_or_loads_in_a_browser(hostile):
-    """In Chromium, without the policy that would forbid it: every card, every student, every page of the desk."""
+    """In Chromium, without the policy that would forbid it: every card, every student, every page of the
+    desk."""
     ran = []
     with served(hostile) as url, chromium() as browser:
         for who, addresses in (
@@ -184,7 +209,8 @@ def test_nothing_of_a_text_runs_or_loads_in_a_browser(hostile):
                 page.goto(url + address)
                 page.wait_for_timeout(30)
                 assert page.evaluate(
-                    "!document.querySelector('iframe, object, embed, base, [onerror], [onload], a[href^=javascript]')"
+                    "!document.querySelector('iframe, object, embed, base, [onerror], [onload], "
+                    "a[href^=javascript]')"
                 )
             context.close()
     assert ran == []

@@ -1,5 +1,6 @@
-"""What people do on the site from beginning to end, in Chromium: a student practises, hands in and comes back; an instructor
-publishes, looks on, brings in and takes away; names as people have them; a keyboard alone."""
+"""What people do on the site from beginning to end, in Chromium: a student practises, hands in and comes
+back; an instructor publishes, looks on, brings in and takes away; names as people have them; a keyboard
+alone."""
 
 import csv
 import re
@@ -218,7 +219,8 @@ def test_answers_are_brought_in_and_marks_taken_away(room, window, handed_out, t
     seed = class_.issued.seeds[MAX, "slotted_mechanism"]
     answers = tmp_path / "answers.csv"
     answers.write_text(
-        f"student,exercise,seed,part,answer\n{MAX},slotted_mechanism,{seed},rA,{right(class_, MAX)['e1-rA']}\n"
+        "student,exercise,seed,part,answer\n"
+        f"{MAX},slotted_mechanism,{seed},rA,{right(class_, MAX)['e1-rA']}\n"
     )
     page = window(TEACHER, f"/desk/{number}/files", "fr", "desk")
     page.set_input_files("input[name=answers]", str(answers))
@@ -279,7 +281,8 @@ def test_names_as_people_have_them_stand_on_every_page(room, window, handed_out)
 
 _SEEN = """() => {
   const one = document.activeElement, style = getComputedStyle(one);
-  return one === document.body || one.matches(":focus-visible") && (style.outlineStyle !== "none" && parseFloat(style.outlineWidth) >= 1);
+  return one === document.body || one.matches(":focus-visible")
+    && (style.outlineStyle !== "none" && parseFloat(style.outlineWidth) >= 1);
 }"""
 
 
@@ -304,7 +307,8 @@ def test_a_keyboard_alone_practises(room, window):
         page.keyboard.press("Enter")
     variant = room[0].site.variant("coriolis", int(page.url.rpartition("/")[2]), "en")
     assert page.evaluate(
-        "document.querySelectorAll('[tabindex]').length === document.querySelectorAll('[tabindex=\"0\"], [tabindex=\"-1\"]').length"
+        "document.querySelectorAll('[tabindex]').length === "
+        'document.querySelectorAll(\'[tabindex="0"], [tabindex="-1"]\').length'
     )
     for part in variant.parts:
         answer = right_answer(variant, part)

@@ -1,5 +1,5 @@
-"""Every page of the site in Chromium, on a telephone and on a desk, in French and English: it fits, it is read aloud, it is what
-its title says, a thumb hits what there is, nothing fails behind it, and it prints."""
+"""Every page of the site in Chromium, on a telephone and on a desk, in French and English: it fits, it is
+read aloud, it is what its title says, a thumb hits what there is, nothing fails behind it, and it prints."""
 
 import pytest
 from site_browser import chromium, context_of, cut_in_print, low, serious, served, too_wide, watched
@@ -89,13 +89,17 @@ def test_every_page_is_without_fault(lived, lang, size):
 
 #: What the keyboard stands on: nothing, or what is wrong with it.
 STOP = """() => {
-  const one = document.activeElement, box = one.getBoundingClientRect(), look = getComputedStyle(one), wrong = [];
+  const one = document.activeElement, box = one.getBoundingClientRect(), wrong = [];
+  const look = getComputedStyle(one);
   if (one === document.body) return null;
   const acts = one.matches("a, button, input, select, textarea, summary, [role=application]");
-  if (!acts && one.scrollWidth <= one.clientWidth && one.scrollHeight <= one.clientHeight) wrong.push("a stop at nothing");
+  const scrolls = one.scrollWidth > one.clientWidth || one.scrollHeight > one.clientHeight;
+  if (!acts && !scrolls) wrong.push("a stop at nothing");
   if (look.outlineStyle === "none") wrong.push("no mark");
-  const [x, y] = [box.left + Math.min(box.width / 2, 30), (Math.max(box.top, 0) + Math.min(box.bottom, innerHeight)) / 2];
-  const over = document.elementFromPoint(x, y), own = over && (one.contains(over) || over.contains(one) || Array.from(one.labels || []).some((label) => label.contains(over)));
+  const x = box.left + Math.min(box.width / 2, 30);
+  const y = (Math.max(box.top, 0) + Math.min(box.bottom, innerHeight)) / 2;
+  const over = document.elementFromPoint(x, y), labels = Array.from(one.labels || []);
+  const own = over && [one, ...labels].some((each) => each.contains(over)) || over && over.contains(one);
   if (!own) wrong.push("hidden");
   return wrong.map((what) => `${what}: ${one.outerHTML.slice(0, 90)}`);
 }"""

@@ -1,4 +1,5 @@
-"""What is typed is kept, whatever happens to the line, the page and the session: on sheets to practise and on papers alike."""
+"""What is typed is kept, whatever happens to the line, the page and the session: on sheets to practise and on
+papers alike."""
 
 import re
 from dataclasses import replace
@@ -18,13 +19,18 @@ KEPT = "is kept|Saved"
 #: One a test: what one typed is not there for another.
 _EXERCISES = iter(
     "slotted_mechanism coriolis two_circles grashof quick_return_design havens_planetary slider_extras "
-    "ball_reducer quick_return four_bar_positions crank_rocker_design mechanical_advantage slider_crank".split()
+    "ball_reducer quick_return four_bar_positions crank_rocker_design "
+    "mechanical_advantage slider_crank".split()
 )
-_ON_DEVICE = "Object.entries(localStorage).filter(([key]) => key.startsWith('coursework ')).map(([, text]) => text).join()"
+_ON_DEVICE = (
+    "Object.entries(localStorage).filter(([key]) => key.startsWith('coursework ')).map(([, text]) => "
+    "text).join()"
+)
 
 
 class Device:
-    """A browser of Zoé's at one sheet; ``boxes`` are two of its boxes, by the names that they are kept under."""
+    """A browser of Zoé's at one sheet; ``boxes`` are two of its boxes, by the names that they are kept
+    under."""
 
     def __init__(self, desk, kind, name):
         self.class_, self.home, browser = desk

@@ -1,4 +1,5 @@
-"""Lessons on the site: every piece in steps, links that lead somewhere, blanks that are marked as in a notebook."""
+"""Lessons on the site: every piece in steps, links that lead somewhere, blanks that are marked as in a
+notebook."""
 
 import gzip
 import re
@@ -123,7 +124,8 @@ def test_a_lesson_stands_on_the_site_with_its_figures_and_leads_to_its_exercises
     assert words(lang, "site")["lessons"]["contents"] in page
 
 
-#: Kilobytes of a lesson's page at most, as the site compresses it: every time, and of a part of its steps, once.
+#: Kilobytes of a lesson's page at most, as the site compresses it: every time, and of a part of its steps,
+#: once.
 PAGE_KB, STEPS_KB = 5, 18
 
 
@@ -234,8 +236,13 @@ def test_a_blank_is_marked_as_in_a_notebook(zoe, script):
 
 def test_all_right_is_said_and_nothing_typed_too(zoe):
     number, boxes = blanks(zoe.get(f"/lessons/{LESSON}?whole").text)[0]
-    example = coursework.worked("four_bar_positions", seed=234, lang="en", level=2, parts=(
-        "a", "b", "c", "theta3_open", "theta4_open", "theta3_crossed", "theta4_crossed"))  # fmt: skip
+    example = coursework.worked(
+        "four_bar_positions",
+        seed=234,
+        lang="en",
+        level=2,
+        parts=("a", "b", "c", "theta3_open", "theta4_open", "theta3_crossed", "theta4_crossed"),
+    )
     right = {
         box: f"{example.variant.walk[part.quantity]:.6g}"
         for box, part in zip(boxes, example.left, strict=True)
@@ -253,7 +260,8 @@ def test_all_right_is_said_and_nothing_typed_too(zoe):
 
 
 def test_an_example_that_was_checked_stands_as_it_was_left_on_every_device(class_):
-    """Of the person alone, in either form of the page, in the language of the reader, as long as the lesson has the example."""
+    """Of the person alone, in either form of the page, in the language of the reader, as long as the lesson
+    has the example."""
     number, boxes = blanks(class_.browser(MAX).get(f"/lessons/{LESSON}?whole").text)[0]
     mine = class_.browser(MAX)
     mine.post(f"/lessons/{LESSON}", data={"_seal": mine.seal, "example": number, boxes[0]: "13 pears"})

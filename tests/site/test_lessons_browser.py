@@ -1,4 +1,5 @@
-"""Lessons in Chromium: step by step by touch to an exercise, back to the place, blanks that are marked, the whole page without a script."""
+"""Lessons in Chromium: step by step by touch to an exercise, back to the place, blanks that are marked, the
+whole page without a script."""
 
 import pytest
 from site_browser import cut_in_print, low, serious, too_wide, watched
@@ -126,7 +127,10 @@ def test_an_example_that_was_checked_stands_as_it_was_left_without_a_network_too
     form.locator("button").tap()
     form.locator(".told p").wait_for()
     told = form.locator(".told").inner_text()
-    kept = "caches.match(location.pathname).then((page) => page && page.text()).then((text) => (text || '').includes('12 apples'))"
+    kept = (
+        "caches.match(location.pathname).then((page) => page && page.text()).then((text) => (text || "
+        "'').includes('12 apples'))"
+    )
     until(lambda: page.evaluate(kept))
     for is_offline in (False, True):
         page.context.set_offline(is_offline)

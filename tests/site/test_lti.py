@@ -1,4 +1,5 @@
-"""The site behind links of a learning platform: who comes, what they are dealt, their points, what the staff sees."""
+"""The site behind links of a learning platform: who comes, what they are dealt, their points, what the staff
+sees."""
 
 import html
 import re
@@ -286,14 +287,21 @@ def test_what_is_closed_deals_nothing(linked):
 
 def picks(linked):
     settings = {
-        "deep_link_return_url": f"{SITE}/return", "accept_types": ["ltiResourceLink"],
-        "accept_presentation_document_targets": ["iframe"], "accept_multiple": True,
-    }  # fmt: skip
+        "deep_link_return_url": f"{SITE}/return",
+        "accept_types": ["ltiResourceLink"],
+        "accept_presentation_document_targets": ["iframe"],
+        "accept_multiple": True,
+    }
     visitor = linked.visitor()
     page, _ = visitor.enter(
-        sub="emmy", roles=TEACHER,
-        **{f"{LTI}message_type": "LtiDeepLinkingRequest", f"{DEEP}deep_linking_settings": settings, f"{LTI}resource_link": None},
-    )  # fmt: skip
+        sub="emmy",
+        roles=TEACHER,
+        **{
+            f"{LTI}message_type": "LtiDeepLinkingRequest",
+            f"{DEEP}deep_linking_settings": settings,
+            f"{LTI}resource_link": None,
+        },
+    )
     return page
 
 
@@ -320,7 +328,8 @@ def test_an_instructor_sees_the_class_and_no_person_is_made_of_them(linked):
 
 
 def test_who_teaches_another_course_of_the_platform_sees_nobody_of_this_one(linked):
-    """A link may name any assignment: before, it showed names, points and marks of a class that is not theirs."""
+    """A link may name any assignment: before, it showed names, points and marks of a class that is not
+    theirs."""
     hands_in(linked)
     row = linked.points("Ada Byron")
     told = f"{row.points:g} / {row.out_of:g}"

@@ -1,4 +1,5 @@
-"""A mechanism that staff write or draw on the site: from nothing to a marked exercise, and what an attacker may try with it."""
+"""A mechanism that staff write or draw on the site: from nothing to a marked exercise, and what an attacker
+may try with it."""
 
 import html
 import re
@@ -119,9 +120,12 @@ def test_the_built_in_course_is_never_written(class_of_three):
 def test_what_students_have_in_an_assignment_is_not_changed(own):
     variant = own.site.course["toggle"].variant(3, "en")
     content = {
-        "format": 1, "roster": False, "assignment": {"name": "a", "title": {"en": "A"}, "exercises": ["toggle"]},
-        "students": {ZOE: {}}, "issued": [{"student": ZOE, "record": variant.record}],
-    }  # fmt: skip
+        "format": 1,
+        "roster": False,
+        "assignment": {"name": "a", "title": {"en": "A"}, "exercises": ["toggle"]},
+        "students": {ZOE: {}},
+        "issued": [{"student": ZOE, "record": variant.record}],
+    }
     with own.site.store.begin() as connection:
         put_issued(connection, content)
     before = (own.folder / "toggle.toml").read_bytes()
@@ -168,17 +172,24 @@ def test_boxes_write_what_they_say(name, tmp_path_factory):
     }
 
 
-#: What boxes do not say, in a file that asks more: weights, a load of a driven length, a coordinate, a table behind the questions.
+#: What boxes do not say, in a file that asks more: weights, a load of a driven length, a coordinate, a table
+#: behind the questions.
 MORE = {
-    "tipper": "xG", "piston_engine": "xA", "two_loops": "yE", "needle_bar": "xP",
-}  # fmt: skip
+    "tipper": "xG",
+    "piston_engine": "xA",
+    "two_loops": "yE",
+    "needle_bar": "xP",
+}
 
 
 @each_row("name, coordinate", list(MORE.items()))
 def test_what_boxes_do_not_say_stays(name, coordinate):
     text = (LINKAGES / "exercises" / f"{name}.toml").read_text("utf-8")
     text = text.replace('positions = ["', f'positions = ["{coordinate}", "')
-    text += f'\n[ask.points]\n{coordinate} = 3\n# of a book\n[[known]]\ngiven = {{}}\ngives = {{ {coordinate} = "1 mm" }}\n'
+    text += (
+        f"\n[ask.points]\n{coordinate} = 3\n# of a book\n[[known]]\ngiven = {{}}\ngives = {{ {coordinate} "
+        f'= "1 mm" }}\n'
+    )
     stated = tomllib.loads(text)
     first = stated["ask"]["positions"][1]
     view = mechanism_view(text, name, "en", CheckedBoxes((), (f"positions {first}", "polygon velocity")))
@@ -193,7 +204,8 @@ def test_what_boxes_do_not_say_stays(name, coordinate):
 
 @pytest.mark.slow
 def test_what_boxes_offer_makes_an_exercise():
-    """Of every sort of driver, slide and wheel: each polygon, equation, centre and rate that a box offers has variants and answers."""
+    """Of every sort of driver, slide and wheel: each polygon, equation, centre and rate that a box offers has
+    variants and answers."""
     faults = {}
     for name in (
         "needle_bar",

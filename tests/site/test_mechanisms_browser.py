@@ -1,4 +1,5 @@
-"""A teacher who does not program draws a linkage in Chromium, by touch or with a keyboard alone, and has an exercise."""
+"""A teacher who does not program draws a linkage in Chromium, by touch or with a keyboard alone, and has an
+exercise."""
 
 import math
 import re
@@ -28,30 +29,43 @@ def window(desk):
         yield open_
 
 
-#: A slider-crank: crank of 50 mm, bar of about 180 mm, the slide 20 mm above the pivot; tools with the places that are tapped, mm.
+#: A slider-crank: crank of 50 mm, bar of about 180 mm, the slide 20 mm above the pivot; tools with the places
+#: that are tapped, mm.
 SLIDER_CRANK = (
-    ("ground", (120, 100)), ("bar", (120, 100), (150, 140), (150, 140), (325, 120)), ("slide", (325, 120), (440, 120)),
-)  # fmt: skip
+    ("ground", (120, 100)),
+    ("bar", (120, 100), (150, 140), (150, 140), (325, 120)),
+    ("slide", (325, 120), (440, 120)),
+)
 
 
 #: What drives otherwise, loads, wheels, and a group that closes all together, with a line of each one's file.
 DRAWN = {
     "jack": (
-        ("ground", (100, 100), (220, 60)), ("bar", (100, 100), (300, 140)), ("jack", (220, 60), (300, 140)), ("load", (200, 120)),
+        ("ground", (100, 100), (220, 60)),
+        ("bar", (100, 100), (300, 140)),
+        ("jack", (220, 60), (300, 140)),
+        ("load", (200, 120)),
     ),
     "moved_slide": (
-        ("ground", (120, 100)), ("bar", (120, 100), (150, 140), (150, 140), (325, 100)), ("slide", (325, 100), (440, 100)),
-        ("driver", (325, 100)), ("load", (150, 140), (150, 40)),
+        ("ground", (120, 100)),
+        ("bar", (120, 100), (150, 140), (150, 140), (325, 100)),
+        ("slide", (325, 100), (440, 100)),
+        ("driver", (325, 100)),
+        ("load", (150, 140), (150, 40)),
     ),
     "wheels": (
-        ("ground", (100, 100), (220, 100)), ("bar", (100, 100), (140, 160), (220, 100), (260, 160)),
-        ("bar", (140, 160), (200, 260), (200, 260), (260, 160)), ("gear", (120, 130), (240, 130)),
+        ("ground", (100, 100), (220, 100)),
+        ("bar", (100, 100), (140, 160), (220, 100), (260, 160)),
+        ("bar", (140, 160), (200, 260), (200, 260), (260, 160)),
+        ("gear", (120, 130), (240, 130)),
     ),
     "three_rods": (
-        ("ground", (100, 60), (260, 60), (400, 120)), ("bar", (100, 60), (130, 100)), ("plate", (170, 140), (250, 130), (210, 180), (170, 140)),
+        ("ground", (100, 60), (260, 60), (400, 120)),
+        ("bar", (100, 60), (130, 100)),
+        ("plate", (170, 140), (250, 130), (210, 180), (170, 140)),
         ("bar", (130, 100), (170, 140), (260, 60), (250, 130), (400, 120), (210, 180)),
     ),
-}  # fmt: skip
+}
 SAYS = {
     "jack": "105 mm … 125 mm",
     "moved_slide": "165 mm …",
@@ -166,7 +180,8 @@ def test_from_nothing_to_a_mark_by_touch(desk, window):
 
 
 def test_jacks_wheels_loads_and_groups_of_three_are_drawn(desk, window):
-    """Answers against the law of cosines, and thrusts against the work of the load between two positions near each other."""
+    """Answers against the law of cosines, and thrusts against the work of the load between two positions near
+    each other."""
     page = window("/mechanisms/new")
     for name, steps in DRAWN.items():
         drawn(page, typed, steps)

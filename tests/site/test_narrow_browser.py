@@ -1,5 +1,5 @@
-"""Every page of the site, every exercise and every lesson on the narrowest screen, and with letters of twice the size: nothing
-stands out of the page."""
+"""Every page of the site, every exercise and every lesson on the narrowest screen, and with letters of twice
+the size: nothing stands out of the page."""
 
 import pytest
 from site_browser import chromium, context_of, cut_at_side, enlarge_letters, served, too_wide

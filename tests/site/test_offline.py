@@ -84,7 +84,8 @@ def opened(place, name, path="/practice"):
 def of_person(page):
     """How many pages of anybody this device holds."""
     return page.evaluate(
-        "caches.keys().then((names) => Promise.all(names.filter((n) => n.startsWith('pages ')).map((n) => caches.open(n).then((c) => c.keys()))))"
+        "caches.keys().then((names) => Promise.all(names.filter((n) => n.startsWith('pages ')).map((n) "
+        "=> caches.open(n).then((c) => c.keys()))))"
         ".then((all) => all.flat().length)"
     )
 

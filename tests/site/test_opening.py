@@ -1,4 +1,5 @@
-"""A paper's page is prepared before the assignment opens: the same page, never an old one, for nobody before its time."""
+"""A paper's page is prepared before the assignment opens: the same page, never an old one, for nobody before
+its time."""
 
 import io
 import re
@@ -85,7 +86,8 @@ def texts_of(page):
 
 @pytest.mark.parametrize("lang", ["en", "fr"])
 def test_a_prepared_page_is_the_page_made_directly_byte_for_byte(served, lang, monkeypatch):
-    """Blank, and with something in each box; and what stands in the boxes is what the templates of a sheet print."""
+    """Blank, and with something in each box; and what stands in the boxes is what the templates of a sheet
+    print."""
     number = dealt(served, assignment=EVERY_BOX)
     browser, address = served.browser(ZOE, lang), f"/assignments/{number}"
     direct = page_of(browser, number)
@@ -207,9 +209,16 @@ def test_nobody_reads_a_prepared_page_before_it_opens(served, tmp_path):
     for name in (ZOE, MAX):
         browser = served.browser(name)
         for address in (
-            "/", "/assignments", "/account", "/account/data", "/practice", f"/assignments/{number}",
-            f"/assignments/{number}/paper.pdf", f"/assignments/{number}/notebook.ipynb", f"/assignments/{number}/feedback",
-        ):  # fmt: skip
+            "/",
+            "/assignments",
+            "/account",
+            "/account/data",
+            "/practice",
+            f"/assignments/{number}",
+            f"/assignments/{number}/paper.pdf",
+            f"/assignments/{number}/notebook.ipynb",
+            f"/assignments/{number}/feedback",
+        ):
             reply = browser.get(address)
             assert not [one for one in words if one.encode() in reply.content], address
             assert not (address.startswith(f"/assignments/{number}") and reply.status_code == 200)

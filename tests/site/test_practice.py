@@ -295,7 +295,8 @@ def test_predictions_stand_beside_what_came_out(zoe):
 
 
 def test_two_pages_never_overwrite_one_another_unseen(zoe):
-    """Two pages were opened before anything was typed; the second one to write is told what the first wrote."""
+    """Two pages were opened before anything was typed; the second one to write is told what the first
+    wrote."""
     draft = f"{zoe.address}/draft"
 
     def kept(text, over):

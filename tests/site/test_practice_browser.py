@@ -1,4 +1,5 @@
-"""Practice in Chromium: a sheet fits its screen, pieces come in place, a page without script does; what is kept: test_keeping_browser.py."""
+"""Practice in Chromium: a sheet fits its screen, pieces come in place, a page without script does; what is
+kept: test_keeping_browser.py."""
 
 import pytest
 from site_browser import low, serious, told, too_wide, windows

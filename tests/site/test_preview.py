@@ -1,4 +1,5 @@
-"""An exercise under work: its page follows each save, tells what does not hold as the commands do, and keeps what worked last."""
+"""An exercise under work: its page follows each save, tells what does not hold as the commands do, and keeps
+what worked last."""
 
 import httpx
 import pytest

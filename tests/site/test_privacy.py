@@ -163,15 +163,59 @@ def test_no_table_holds_who_was_erased(site):
 
 #: Texts that say nobody's name, or are what others wrote; the tables of one person go as a whole.
 NOBODYS = {
-    "assignment.secret", "assignment.link", "job", "lti_nonce", "lti_course",
-    "setting", "assignment.name", "assignment.published", "assignment.course", "variant.exercise", "variant.seed", "variant.letter", "variant.record",
-    "delivery.digest", "delivery.receipt", "answer.exercise", "answer.seed", "answer.part", "answer.answer", "answer.lang",
-    "answer.student", "drawing", "marking.student", "marking.exercise", "marking.seed", "marking.state", "marking.lang", "mark",
-    "decision.student", "decision.exercise", "decision.seed", "decision.part", "decision.kind", "decision.answer", "worksheet.file",
-    "decision.lasting_id", "decision.withdraws",
-    "placing.row", "audit.what", "audit.address", "dealt", "scanned.page", "scanned.student", "scanned.kept", "scanned.picture", "typed.student", "typed.exercise",
-    "typed.seed", "typed.part", "typed.coordinate", "typed.answer", "typed.seen",
-}  # fmt: skip
+    "assignment.secret",
+    "assignment.link",
+    "job",
+    "lti_nonce",
+    "lti_course",
+    "setting",
+    "assignment.name",
+    "assignment.published",
+    "assignment.course",
+    "variant.exercise",
+    "variant.seed",
+    "variant.letter",
+    "variant.record",
+    "delivery.digest",
+    "delivery.receipt",
+    "answer.exercise",
+    "answer.seed",
+    "answer.part",
+    "answer.answer",
+    "answer.lang",
+    "answer.student",
+    "drawing",
+    "marking.student",
+    "marking.exercise",
+    "marking.seed",
+    "marking.state",
+    "marking.lang",
+    "mark",
+    "decision.student",
+    "decision.exercise",
+    "decision.seed",
+    "decision.part",
+    "decision.kind",
+    "decision.answer",
+    "worksheet.file",
+    "decision.lasting_id",
+    "decision.withdraws",
+    "placing.row",
+    "audit.what",
+    "audit.address",
+    "dealt",
+    "scanned.page",
+    "scanned.student",
+    "scanned.kept",
+    "scanned.picture",
+    "typed.student",
+    "typed.exercise",
+    "typed.seed",
+    "typed.part",
+    "typed.coordinate",
+    "typed.answer",
+    "typed.seen",
+}
 
 
 def test_every_text_of_every_table_is_thought_of():
@@ -229,7 +273,8 @@ def test_who_was_erased_is_out_at_once_and_nobody_takes_the_place(site):
     assert browser.get("/account").status_code == 303
     with site.site.store.begin() as connection:
         again = put_person(connection, "somebody else", "Somebody Else", "", {})
-        # No database of ours gives a number once more; should one do it all the same, a session is not handed on.
+        # No database of ours gives a number once more; should one do it all the same, a session is not handed
+        # on.
         assert again != person
         connection.execute(update(people).where(people.c.id == again).values(id=person))
     assert browser.get("/account").status_code == 303

@@ -1,4 +1,5 @@
-"""Publishing: what is handed out, the late ones, extensions, what a student sees of it; and that nobody else may."""
+"""Publishing: what is handed out, the late ones, extensions, what a student sees of it; and that nobody else
+may."""
 
 import base64
 import io
@@ -471,10 +472,19 @@ def test_practice_tells_what_is_to_be_handed_in_until_it_is(class_of_three):
 # ------------------------------------------------------------------ what a form puts together
 
 CHOSEN = {
-    "title": 'Contrôle n° 3 : "bielle"', "name": "week7", "date": "2026-12-04", "duration": "1 h 30", "mark_of": "20", "versions": "2",
-    "exercise": ["slotted_mechanism", "grashof"], "place.slotted_mechanism": "2", "place.grashof": "1",
-    "part.slotted_mechanism": ["rA", "theta4"], "points.slotted_mechanism.rA": "2,5", "points.slotted_mechanism.theta4": "1",
-}  # fmt: skip
+    "title": 'Contrôle n° 3 : "bielle"',
+    "name": "week7",
+    "date": "2026-12-04",
+    "duration": "1 h 30",
+    "mark_of": "20",
+    "versions": "2",
+    "exercise": ["slotted_mechanism", "grashof"],
+    "place.slotted_mechanism": "2",
+    "place.grashof": "1",
+    "part.slotted_mechanism": ["rA", "theta4"],
+    "points.slotted_mechanism.rA": "2,5",
+    "points.slotted_mechanism.theta4": "1",
+}
 
 
 def test_a_form_shows_parts_points_and_pages_and_writes_the_file_that_it_issues(
@@ -490,8 +500,11 @@ def test_a_form_shows_parts_points_and_pages_and_writes_the_file_that_it_issues(
     path.write_bytes(file)
     told = read_assignment(path, class_of_three.site.course)
     assert (told.date, told.duration, told.versions, told.names) == (
-        date(2026, 12, 4), {"": "1 h 30"}, 2, ("grashof", "slotted_mechanism"),
-    )  # fmt: skip
+        date(2026, 12, 4),
+        {"": "1 h 30"},
+        2,
+        ("grashof", "slotted_mechanism"),
+    )
     asked = re.compile(r"<details( open)?><summary>Questions asked: (\d+)</summary>")
     assert asked.findall(page.text) == [(" open", "3"), (" open", "2")]
     # From a mechanism's page its questions are chosen already: they stand folded away.
@@ -533,7 +546,10 @@ def test_a_form_that_makes_no_sense_is_told_before_anything_is_drawn(class_of_th
 
 def test_a_table_written_as_a_file_reads_back_as_itself():
     table = {
-        "title": 'a "b" \\ \n\t\x7f é', "date": date(2026, 1, 2), "mark": {"of": 20.0, "step": 0.25}, "cover": True,
+        "title": 'a "b" \\ \n\t\x7f é',
+        "date": date(2026, 1, 2),
+        "mark": {"of": 20.0, "step": 0.25},
+        "cover": True,
         "exercises": [{"name": "x", "parts": ["a", "b"], "points": {"a": 1.0, "b.c d": 2.5}}],
-    }  # fmt: skip
+    }
     assert tomllib.loads(toml_of(table)) == table

@@ -1,4 +1,5 @@
-"""The queue: what waits and why, decided for all who wrote the same, once, by whom; what is handed in anew waits anew."""
+"""The queue: what waits and why, decided for all who wrote the same, once, by whom; what is handed in anew
+waits anew."""
 
 import re
 

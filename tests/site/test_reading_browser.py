@@ -1,4 +1,5 @@
-"""Reading a sheet in Chromium: keys for a part's signs, figure and data in sight, one question at a time, dark and printed pages."""
+"""Reading a sheet in Chromium: keys for a part's signs, figure and data in sight, one question at a time,
+dark and printed pages."""
 
 import pytest
 from site_browser import chromium, context_of, cut_in_print, serious, served, too_wide

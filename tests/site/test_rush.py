@@ -1,4 +1,5 @@
-"""A rush before an assignment closes: what arrived in time is taken, whatever waits before it; it is marked beside the requests."""
+"""A rush before an assignment closes: what arrived in time is taken, whatever waits before it; it is marked
+beside the requests."""
 
 import asyncio
 from concurrent.futures import ThreadPoolExecutor
@@ -86,7 +87,8 @@ def delivered(one, number, name=ZOE):
 
 
 def test_all_who_hand_in_before_it_closes_are_taken_while_every_thread_is_busy(served, monkeypatch):
-    """The threads of pages are all taken, the marking is slow, and the clock goes on while the crowd waits."""
+    """The threads of pages are all taken, the marking is slow, and the clock goes on while the crowd
+    waits."""
     number = with_crowd(served)
     served.at = CLOSES - 6 * SECOND
     headers = {name: headers_of(served, name) for name in CROWD}
@@ -335,11 +337,15 @@ def test_what_was_saved_is_handed_in_when_nobody_asks_for_a_page(site_class):
     number = with_crowd(one, replace(USUAL, takes_saved=True))
     rows = [
         {
-            "person_id": one.ids[name], "sheet": f"assignment/{number}", "box": "e1-rA", "text": "5", "version": 1,
+            "person_id": one.ids[name],
+            "sheet": f"assignment/{number}",
+            "box": "e1-rA",
+            "text": "5",
+            "version": 1,
             "changed": CLOSES - SECOND,
         }
         for name in CROWD
-    ]  # fmt: skip
+    ]
     from coursework.database.tables import draft
 
     with one.site.store.begin() as connection:

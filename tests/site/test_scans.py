@@ -41,8 +41,10 @@ def marks(desk, student):
     now = class_now(desk.site, desk.number)
     return {
         part: (mark.answer, mark.points)
-        for one in now.graded.values() if one.student == student for part, mark in one.lines.items()
-    }  # fmt: skip
+        for one in now.graded.values()
+        if one.student == student
+        for part, mark in one.lines.items()
+    }
 
 
 def test_what_is_sent_is_read_typed_and_marked(desk):
@@ -129,7 +131,8 @@ def typed(desk):
 
 
 def test_the_cards_of_a_question_are_confirmed_at_once_and_what_was_typed_last_is_undone(desk):
-    """Each is a text of its own; an empty box, and a card that another person has typed meanwhile, are left alone."""
+    """Each is a text of its own; an empty box, and a card that another person has typed meanwhile, are left
+    alone."""
     students = ("Ada", "Bo", "Cy", "Di")
     send(
         desk,

@@ -1,4 +1,5 @@
-"""On the site too nobody draws a paper from public words, and no page or file of a student holds the secret."""
+"""On the site too nobody draws a paper from public words, and no page or file of a student holds the
+secret."""
 
 import re
 from collections import Counter
@@ -114,8 +115,8 @@ def test_no_address_tells_a_paper_before_it_opens(class_of_three):
 
 
 def _crawled(browser, addresses, most):
-    """All that links lead to, from some addresses on; of practice the first page alone, of lessons and what is explored, which
-    know of no assignment, so many pages of each folder."""
+    """All that links lead to, from some addresses on; of practice the first page alone, of lessons and what
+    is explored, which know of no assignment, so many pages of each folder."""
     found, waiting, everybodys = {}, list(addresses), Counter()
     while waiting:
         address = waiting.pop().partition("#")[0].partition("?")[0]

@@ -1,4 +1,5 @@
-"""What docs/security.md promises of every reply, every cookie and the log, beside what stands in the other tests of the site."""
+"""What docs/security.md promises of every reply, every cookie and the log, beside what stands in the other
+tests of the site."""
 
 import logging
 import re

@@ -92,7 +92,8 @@ def test_a_group_is_shown_alone_and_an_assistant_sees_theirs(site):
 
 
 def test_presence_on_the_roster_is_known_to_class_evening_and_semester(site):
-    """An attendance list sent as a roster: who is excused has no zero, who was present and wrote nothing has one."""
+    """An attendance list sent as a roster: who is excused has no zero, who was present and wrote nothing has
+    one."""
     page, at = site.browser(TEACHER, "fr"), f"/desk/{site.of_max}"
     answered = {
         name

@@ -81,7 +81,8 @@ def test_it_ends_cleanly_where_it_is_told_to_as_soon_as_it_says_where_it_is(tmp_
 @needs_processes
 @pytest.mark.parametrize("workers", [1, 2])
 def test_halves_of_requests_do_not_fill_it(tmp_path, workers):
-    """It holds as many connections as the machine lets it, and not the usual 1024 that one person can open."""
+    """It holds as many connections as the machine lets it, and not the usual 1024 that one person can
+    open."""
     with Served(tmp_path, "serve", "--port", "0", "--workers", workers) as site:
         asked = (
             until(lambda: len(site.workers) == workers and site.workers)
@@ -204,7 +205,10 @@ def test_a_request_under_way_is_answered_before_the_end(tmp_path):
         host, port = site.url.removeprefix("http://").split(":")
         with socket.create_connection((host, int(port)), timeout=30) as line:
             body = b"back=/practice"
-            head = f"POST /language HTTP/1.1\r\nHost: {host}:{port}\r\nContent-Type: application/x-www-form-urlencoded\r\nContent-Length: {len(body)}\r\n\r\n"
+            head = (
+                f"POST /language HTTP/1.1\r\nHost: {host}:{port}\r\nContent-Type: "
+                f"application/x-www-form-urlencoded\r\nContent-Length: {len(body)}\r\n\r\n"
+            )
             line.sendall(head.encode() + body[:5])
             time.sleep(0.5)
             ending = threading.Thread(target=lambda: found.append(site.end()))

@@ -1,5 +1,6 @@
-"""Every address of the site, asked for by nobody, a student, another student and an administrator: who may, who may not, and what
-no reply holds. Pages are found in the site's own table; a page that ``site_walk.fillings`` does not know fails."""
+"""Every address of the site, asked for by nobody, a student, another student and an administrator: who may,
+who may not, and what no reply holds. Pages are found in the site's own table; a page that
+``site_walk.fillings`` does not know fails."""
 
 import re
 from functools import cache
@@ -33,7 +34,8 @@ def address_of(site, page, *, others=False):
 
 
 class Replies(NamedTuple):
-    """What a page answers to nobody, a student and an administrator; what they are shown after it; what an odd request is told."""
+    """What a page answers to nobody, a student and an administrator; what they are shown after it; what an
+    odd request is told."""
 
     shown: dict
     later: list
@@ -48,7 +50,8 @@ def replies(site):
 
 
 def asked(site, page):
-    """A reply of each sort: shown, refused, not there, too large, odd; what nobody is told who asks oddly: test_headers.py."""
+    """A reply of each sort: shown, refused, not there, too large, odd; what nobody is told who asks oddly:
+    test_headers.py."""
     address = address_of(site, page)
     browsers = {name: site.browser(name, "fr" if name == ZOE else "en") for name in (None, ZOE, TEACHER)}
     headers = {None: {"origin": "https://evil.example"}}
@@ -120,7 +123,8 @@ def test_an_administrator_may(replies, page):
 @every_page
 @each_row("name", [None, ZOE])
 def test_no_reply_holds_what_is_not_for_them(site, page, name):
-    """Neither an answer before its time, nor anything of another student, wherever they stand; whatever is asked."""
+    """Neither an answer before its time, nor anything of another student, wherever they stand; whatever is
+    asked."""
     browser, places = site.browser(name), fillings(site)[page.path]
     for others in (False, True) if places.others is not None else (False,):
         for ask in ("get", "fill"):
@@ -196,9 +200,14 @@ def test_no_form_is_taken_from_elsewhere(site, page):
     browser = site.browser(TEACHER)
     told = {"_seal": browser.seal}
     for headers in (
-        {"origin": "https://evil.example"}, {"origin": "null"}, {"origin": "https://127.0.0.1:8000"}, {"origin": "http://["},
-        {"origin": "http://127.0.0.1:8001"}, {"sec-fetch-site": "cross-site"}, {"sec-fetch-site": "same-site"},
-    ):  # fmt: skip
+        {"origin": "https://evil.example"},
+        {"origin": "null"},
+        {"origin": "https://127.0.0.1:8000"},
+        {"origin": "http://["},
+        {"origin": "http://127.0.0.1:8001"},
+        {"sec-fetch-site": "cross-site"},
+        {"sec-fetch-site": "same-site"},
+    ):
         assert browser.post(address_of(site, page), data=told, headers=headers).status_code == 403, headers
 
 

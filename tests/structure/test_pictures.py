@@ -43,7 +43,8 @@ def test_no_line_passes_through_a_body_or_a_pivot_that_it_does_not_join(seeds):
 
 
 def test_lines_of_a_graph_cross_seldom():
-    """As the bodies are numbered, three times as often; lines of one body, or side by side, begin near each other."""
+    """As the bodies are numbered, three times as often; lines of one body, or side by side, begin near each
+    other."""
     graphs = [
         joints for number in range(1000, 1024) for joints in (to_count(number), to_decompose(number).joints)
     ]

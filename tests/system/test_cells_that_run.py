@@ -1,4 +1,5 @@
-"""No cell of a table is computed by the spreadsheet that opens it, however it parts them, and every text comes back."""
+"""No cell of a table is computed by the spreadsheet that opens it, however it parts them, and every text
+comes back."""
 
 from __future__ import annotations
 
@@ -14,15 +15,60 @@ from tables import each_row
 from coursework.system.tables import SPREADSHEETS, as_written, csv_text, inert
 
 ALIVE = (
-    "=A1", "=1+2", "+A1", "-A1", "@SUM(A1)", "＝1+1", "＋A1", "－A1", "＠A1", '="a"&"b"', "='file:///etc/passwd'#$x.A1",
-    "x;=cmd|' /C calc'!A0", "x,=cmd|' /C calc'!A0", "x\t=A1", "\t=A1", "\r=A1", "\n=A1", "a\r\n=A1", " =A1", "\u00a0=A1",
-    "\ufeff=A1", "\u200b=A1", "\x1b=A1", 'x;"=cmd|x!A', "-3,5+cmd|x!A", "-2+3", "-3*x", "3;-1+cmd|x!A", "x\u2028=A1", "=",
-    "x;;=A1", "1;+HYPERLINK(A1)",
-)  # fmt: skip
+    "=A1",
+    "=1+2",
+    "+A1",
+    "-A1",
+    "@SUM(A1)",
+    "＝1+1",
+    "＋A1",
+    "－A1",
+    "＠A1",
+    '="a"&"b"',
+    "='file:///etc/passwd'#$x.A1",
+    "x;=cmd|' /C calc'!A0",
+    "x,=cmd|' /C calc'!A0",
+    "x\t=A1",
+    "\t=A1",
+    "\r=A1",
+    "\n=A1",
+    "a\r\n=A1",
+    " =A1",
+    "\u00a0=A1",
+    "\ufeff=A1",
+    "\u200b=A1",
+    "\x1b=A1",
+    'x;"=cmd|x!A',
+    "-3,5+cmd|x!A",
+    "-2+3",
+    "-3*x",
+    "3;-1+cmd|x!A",
+    "x\u2028=A1",
+    "=",
+    "x;;=A1",
+    "1;+HYPERLINK(A1)",
+)
 PLAIN = (
-    "-3", "+3,5", "-12.5 mm", "-1,5e-3 rad/s", "-3; -4,5", "(-3 ; -4)", "(3, -4); (5, -6)", "[26.0, -19.0]; [19.0, 26.0]",
-    "-", "--", "-45°", "12 mm", "-3 m/s^2", "-2 %", "a=b", "x - y", "l'été", "'t Hooft", "-1/2",
-)  # fmt: skip
+    "-3",
+    "+3,5",
+    "-12.5 mm",
+    "-1,5e-3 rad/s",
+    "-3; -4,5",
+    "(-3 ; -4)",
+    "(3, -4); (5, -6)",
+    "[26.0, -19.0]; [19.0, 26.0]",
+    "-",
+    "--",
+    "-45°",
+    "12 mm",
+    "-3 m/s^2",
+    "-2 %",
+    "a=b",
+    "x - y",
+    "l'été",
+    "'t Hooft",
+    "-1/2",
+)
 
 
 @each_row("spreadsheet", SPREADSHEETS.values())

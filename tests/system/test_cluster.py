@@ -1,4 +1,5 @@
-"""A cluster gives the bytes that one machine gives, whatever happens to its workers, or says in a line what is missing."""
+"""A cluster gives the bytes that one machine gives, whatever happens to its workers, or says in a line what
+is missing."""
 
 from __future__ import annotations
 
@@ -269,7 +270,8 @@ def test_a_course_is_unpacked_once_by_its_content(machines, tmp_path):
 
 
 def test_places_are_told_from_the_course_and_back(load, course_of_one):
-    """A path of the course is that of the unpacked one where the task is done; what comes back names the place here."""
+    """A path of the course is that of the unpacked one where the task is done; what comes back names the
+    place here."""
 
     def done(function, *told):
         return load.unpacked(pickle.loads(load.packed(function, told), buffers=[load.content]))
@@ -396,7 +398,8 @@ ALL = [f"{i}\n".encode() for i in range(24)]
 
 
 def done_through(fault, machines, load):
-    """What tasks of a quarter of a second give, of which some are done and some are not when a fault happens."""
+    """What tasks of a quarter of a second give, of which some are done and some are not when a fault
+    happens."""
     tasks = [
         Task(f"task {i}", subprocess.check_output, (["sh", "-c", f"sleep 0.25; echo {i}"],))
         for i in range(len(ALL))
@@ -518,9 +521,12 @@ def begun(place, *arguments):
     script = place / "main.py"
     script.write_text(MAIN, "utf-8")
     return subprocess.Popen(
-        [sys.executable, "-P", str(script), *map(str, arguments)], stderr=subprocess.PIPE, text=True, start_new_session=True,
+        [sys.executable, "-P", str(script), *map(str, arguments)],
+        stderr=subprocess.PIPE,
+        text=True,
+        start_new_session=True,
         env={**os.environ, "PYTHONPATH": str(PACKAGE)},
-    )  # fmt: skip
+    )
 
 
 def of_session(process):

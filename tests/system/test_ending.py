@@ -1,4 +1,5 @@
-"""Processes end with the one that began them, however that ended; told to end, they leave nothing half written."""
+"""Processes end with the one that began them, however that ended; told to end, they leave nothing half
+written."""
 
 from __future__ import annotations
 

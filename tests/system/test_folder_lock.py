@@ -67,7 +67,8 @@ def test_a_file_that_nobody_has_locked_is_no_hindrance_and_one_that_says_nothing
 
 
 def test_of_many_one_writes(tmp_path):
-    """Each enters a number; while it is within, nobody else is. What is written by one is never the work of two."""
+    """Each enters a number; while it is within, nobody else is. What is written by one is never the work of
+    two."""
     within, most, refused = [], [], []
 
     def writes(number):

@@ -1,5 +1,5 @@
-"""What other users of the machine, and whoever reads a key, can do: files that hold secrets are their owner's, keys can be replaced,
-and the log says when things happened wherever it is read."""
+"""What other users of the machine, and whoever reads a key, can do: files that hold secrets are their
+owner's, keys can be replaced, and the log says when things happened wherever it is read."""
 
 import io
 import logging

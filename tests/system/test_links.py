@@ -1,4 +1,5 @@
-"""Links of a folder that others filled: whatever reads a folder reads nothing outside of it, and quotes nothing of it."""
+"""Links of a folder that others filled: whatever reads a folder reads nothing outside of it, and quotes
+nothing of it."""
 
 import csv
 import io
@@ -34,7 +35,8 @@ def built(tmp_path_factory):
 
 @pytest.fixture
 def folder(tmp_path):
-    """A folder beside which a secret lies, with a link of each sort that leads to it; what may be read is ``good``."""
+    """A folder beside which a secret lies, with a link of each sort that leads to it; what may be read is
+    ``good``."""
     outside, inside = tmp_path / "outside", tmp_path / "handed in"
     (outside / "deep").mkdir(parents=True)
     inside.mkdir()
@@ -72,8 +74,9 @@ def everything_in(folder):
 
 # ---------------------------------------------------------------------------- commands
 
-#: What a command does with a folder that it takes: walks it and reads what others put there; reads files of known names in
-#: it; writes it; or takes what runs or stands for the person's own work: a course, which is code, a list of platforms.
+#: What a command does with a folder that it takes: walks it and reads what others put there; reads files of
+#: known names in it; writes it; or takes what runs or stands for the person's own work: a course, which is
+#: code, a list of platforms.
 WALKS, READS, WRITES, OWN = "walks", "reads", "writes", "own"
 FOLDERS = {
     "grade submissions": WALKS,
@@ -88,7 +91,8 @@ FOLDERS = {
 
 
 def folders_of_commands():
-    """What commands take that may be a folder which somebody else filled: by the command's and its own name."""
+    """What commands take that may be a folder which somebody else filled: by the command's and its own
+    name."""
 
     def all_of(group, names=()):
         context = click.Context(group)

@@ -81,7 +81,8 @@ class Construction:
 
     @cached_property
     def scale(self) -> float:
-        """Scale in mm/s or mm/s^2 for a mm on paper: the exercise's own, or 1, 2 or 5 times a power of ten."""
+        """Scale in mm/s or mm/s^2 for a mm on paper: the exercise's own, or 1, 2 or 5 times a power of
+        ten."""
         room = (full - used for full, used in zip(BOX_MM, _SYMBOLS_MM, strict=True))
         return self.polygon.scale or self.polygon.scale_in(*room)
 

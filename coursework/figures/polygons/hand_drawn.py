@@ -3,15 +3,16 @@ r"""Marking of vector polygons drawn by a student: the wrong vectors, and the ki
 A drawing comes as points in millimetres on paper, x to the right, y up, from any origin; the pole may stand
 anywhere, and the scale may be any. Directions are absolute: a sheet that is turned is another drawing.
 
-What is judged is the construction, as somebody would with ruler and set-square: each vector by what must hold of
-it **from the student's own points**. A known vector has its length, its direction and its sense, and hangs on its
-point; one in proportion to another is judged by the student's own; a line of known direction passes through its point; a point found by two lines lies on both. So an error
-costs the vector that it is made on, and nothing of what is drawn rightly from there. A point in its true place is
-right, too, whatever the points before it are.
+What is judged is the construction, as somebody would with ruler and set-square: each vector by what must hold
+of it **from the student's own points**. A known vector has its length, its direction and its sense, and hangs
+on its point; one in proportion to another is judged by the student's own; a line of known direction passes
+through its point; a point found by two lines lies on both. So an error costs the vector that it is made on,
+and nothing of what is drawn rightly from there. A point in its true place is right, too, whatever the points
+before it are.
 
-Each point may be off by ``tolerance`` mm, so a vector by twice that at its end, and a line by twice that across.
-A direction is thus right to :math:`\arcsin(2\,\mathrm{tolerance} / \mathrm{length})`: 1.1 degrees for 100 mm, 6 for
-20 mm, and anything for a vector of 2 mm, whose direction no ruler shows.
+Each point may be off by ``tolerance`` mm, so a vector by twice that at its end, and a line by twice that
+across. A direction is thus right to :math:`\arcsin(2\,\mathrm{tolerance} / \mathrm{length})`: 1.1 degrees for
+100 mm, 6 for 20 mm, and anything for a vector of 2 mm, whose direction no ruler shows.
 """
 
 from __future__ import annotations
@@ -31,18 +32,23 @@ MOST_MM = 1e9  #: from any pole; no paper is so wide, and what is drawn farther 
 _SAME_SCALE = 0.05  #: by which two scales may differ and be one, drawn inexactly
 
 LENGTH, DIRECTION, SENSE, VECTOR, HUNG, MISSING = KINDS = (
-    "length", "direction", "sense", "vector", "hung", "missing",
-)  # fmt: skip
+    "length",
+    "direction",
+    "sense",
+    "vector",
+    "hung",
+    "missing",
+)
 
 
 @dataclass(frozen=True)
 class DrawingFault:
     """Error of a drawn point.
 
-    ``length``, ``direction``, ``sense``: of the vector that should end there; ``vector``: nothing of it is right;
-    ``hung``: it is right, but starts from another point; ``missing``: the point is not drawn. A point found by two lines
-    has a wrong ``direction`` when it is off one of them, a wrong ``sense`` when a vector is laid off backwards
-    along its line, and ``vector`` when it is on neither.
+    ``length``, ``direction``, ``sense``: of the vector that should end there; ``vector``: nothing of it is
+    right; ``hung``: it is right, but starts from another point; ``missing``: the point is not drawn. A point
+    found by two lines has a wrong ``direction`` when it is off one of them, a wrong ``sense`` when a vector
+    is laid off backwards along its line, and ``vector`` when it is on neither.
     """
 
     kind: str
@@ -183,8 +189,8 @@ def judge_drawing(
     points
         By the polygon's names, mm on paper; the pole is among them, others may be missing.
     scale
-        mm/s or mm/s^2 for a mm, as the student states it. Unless stated, and where most of what is drawn agrees
-        on another, it is the one at which most of the known vectors are right.
+        mm/s or mm/s^2 for a mm, as the student states it. Unless stated, and where most of what is drawn
+        agrees on another, it is the one at which most of the known vectors are right.
     tolerance
         mm by which each point may be off.
 
@@ -337,9 +343,15 @@ def _known_vector(
 
 
 def _crossing(
-    point: str, sides: tuple[Side, ...], here: Mapping[str, complex], drawn: Mapping[str, complex],
-    polygon: Polygon, scale: float, width: float, on_drawn: bool,
-) -> tuple[complex, DrawingFault | None]:  # fmt: skip
+    point: str,
+    sides: tuple[Side, ...],
+    here: Mapping[str, complex],
+    drawn: Mapping[str, complex],
+    polygon: Polygon,
+    scale: float,
+    width: float,
+    on_drawn: bool,
+) -> tuple[complex, DrawingFault | None]:
     """Return the intersection of two lines through the student's points, and the fault of the point drawn.
 
     ``on_drawn``: both lines start from points that are right, in a drawing of some size.
@@ -430,7 +442,8 @@ def _scale(
 
 
 def _ranges(polygon: Polygon, points: Mapping[str, complex], width: float) -> Iterator[tuple[float, float]]:
-    """Yield for each known vector that is drawn the range, in mm of paper for a unit, in which it is right."""
+    """Yield for each known vector that is drawn the range, in mm of paper for a unit, in which it is
+    right."""
     for side in polygon.sides:
         if not (side.is_known and side.start in points and side.end in points and side.value):
             continue

@@ -30,11 +30,12 @@ class DrawnStroke:
 
 @dataclass(frozen=True)
 class OwnDrawing:
-    """Drawing of a student over the right construction: right strokes solid and green, wrong ones dashed and red, the right
-    construction thin and grey.
+    """Drawing of a student over the right construction: right strokes solid and green, wrong ones dashed and
+    red, the right construction thin and grey.
 
-    All is in mm on paper. ``right`` lists the right strokes by their ends, ``circles`` those of the construction by centre and
-    radius, ``points`` the student's points by their names, LaTeX. Strokes are arrows unless ``bars``.
+    All is in mm on paper. ``right`` lists the right strokes by their ends, ``circles`` those of the
+    construction by centre and radius, ``points`` the student's points by their names, LaTeX. Strokes are
+    arrows unless ``bars``.
     """
 
     right: Sequence[tuple[complex, complex]]
@@ -81,7 +82,8 @@ class OwnDrawing:
         for centre, radius in self.circles:
             c = self._at(centre)
             yield (
-                f'<circle cx="{number(c.real)}" cy="{number(c.imag)}" r="{number(self._shrink * radius)}" fill="none" '
+                f'<circle cx="{number(c.real)}" cy="{number(c.imag)}" '
+                f'r="{number(self._shrink * radius)}" fill="none" '
                 f'stroke="{BENEATH}" stroke-width="0.18" stroke-dasharray="1 1"/>'
             )
         for start, end in self.right:
@@ -142,7 +144,8 @@ def drawn_polygon(polygon: Polygon, points: Mapping[str, complex], scale: float 
 
 
 def _is_right(side: Side, judged: JudgedDrawing) -> bool:
-    """Return whether a drawn vector is right: a fault of an end is of one vector, or of all that end there."""
+    """Return whether a drawn vector is right: a fault of an end is of one vector, or of all that end
+    there."""
     faulty = [point for point in (side.start, side.end) if point in judged.faults]
     if side.is_result:
         return not faulty

@@ -1,8 +1,8 @@
 r"""Parts of polygons: a driven crank, two bars that meet, a rod and its slider, a slotted guide.
 
-Each gives the sides of a velocity polygon (``_v``) or of an acceleration polygon (``_a``) in order of construction.
-Image points have the small letters of their points. Vectors are complex numbers in mm; what a bar's length
-and rate are called is told as LaTeX.
+Each gives the sides of a velocity polygon (``_v``) or of an acceleration polygon (``_a``) in order of
+construction. Image points have the small letters of their points. Vectors are complex numbers in mm; what a
+bar's length and rate are called is told as LaTeX.
 """
 
 from __future__ import annotations
@@ -151,10 +151,18 @@ def two_bars_v(B: str, A: str, C: str, AB: complex, omega: float, CB: complex, o
 
 
 def two_bars_a(
-    B: str, A: str, C: str,
-    AB: complex, omega: float, alpha: float, length: str,
-    CB: complex, omega_C: float, alpha_C: float, length_C: str,
-) -> Sides:  # fmt: skip
+    B: str,
+    A: str,
+    C: str,
+    AB: complex,
+    omega: float,
+    alpha: float,
+    length: str,
+    CB: complex,
+    omega_C: float,
+    alpha_C: float,
+    length_C: str,
+) -> Sides:
     """Return the accelerations of two bars that meet; the velocities give the normal parts.
 
     Parameters
@@ -284,11 +292,19 @@ def guide_v(A: str, of_guide: str, line: str, vector: complex, omega: float, sli
 
 
 def guide_a(
-    A: str, of_guide: str, line: str,
-    vector: complex, omega: float, alpha: float, sliding: float, gain: float,
-    length: str, rate: str,
-) -> Sides:  # fmt: skip
-    """Return the accelerations of a guide and its block. The Coriolis term is laid off back from the image of A.
+    A: str,
+    of_guide: str,
+    line: str,
+    vector: complex,
+    omega: float,
+    alpha: float,
+    sliding: float,
+    gain: float,
+    length: str,
+    rate: str,
+) -> Sides:
+    """Return the accelerations of a guide and its block. The Coriolis term is laid off back from the image of
+    A.
 
     Parameters
     ----------
@@ -320,10 +336,15 @@ def guide_a(
     slide = f"{A}/{of_guide}"
     return (
         Side(
-            "k", a, rf"\vec{{a}}^c_{{{slide}}}", 2j * omega * sliding * along, rf"\perp {line}",
-            rf"2 \left|{rate}\right| V_{{{slide}}}", 1j * along,
+            "k",
+            a,
+            rf"\vec{{a}}^c_{{{slide}}}",
+            2j * omega * sliding * along,
+            rf"\perp {line}",
+            rf"2 \left|{rate}\right| V_{{{slide}}}",
+            1j * along,
         ),
         normal("p_a", f"{names}'", of_guide, line, vector, omega, rf"V_{{{of_guide}}}^2 / {length}"),
         tangential(f"{names}'", names, of_guide, line, vector, alpha),
         Side(names, "k", rf"\vec{{a}}^s_{{{slide}}}", gain * along, rf"\parallel {line}", way=along),
-    )  # fmt: skip
+    )

@@ -1,8 +1,8 @@
 r"""Velocity and acceleration polygons: vectors laid end to end from a pole; each point is the image of a
 mechanism's point.
 
-A solution states its polygons in a function ``polygons`` of its quantities, as data; what is drawn, printed or marked
-follows from them::
+A solution states its polygons in a function ``polygons`` of its quantities, as data; what is drawn, printed
+or marked follows from them::
 
     def polygons(r2, theta2, omega2, r3, theta3, omega3, r1_dot):
         OA, AB = polar(r2, theta2), polar(r3, theta3)
@@ -14,9 +14,9 @@ follows from them::
             )),
         )
 
-The sides stand in the order of the construction. Of each it is known before anything is drawn: its direction and its
-length; its direction alone, so that it lies on a line and its unknown end where a second line crosses it; or nothing,
-and then it joins two points that the others have given.
+The sides stand in the order of the construction. Of each it is known before anything is drawn: its direction
+and its length; its direction alone, so that it lies on a line and its unknown end where a second line crosses
+it; or nothing, and then it joins two points that the others have given.
 """
 
 from __future__ import annotations
@@ -39,10 +39,11 @@ _CLOSED = 1e-6  #: of the longest side: what two ways to one point may differ by
 class Side:
     r"""Vector of a polygon, from the image of one point to that of another.
 
-    ``direction`` (``\perp AB``) and ``length`` (``r_2\,\omega_2``) are LaTeX of what is known before the drawing; an
-    empty ``length`` is not known, and neither is an empty ``direction``. ``way``, a complex number of any
-    length, gives the line of a side of known direction where its value may vanish. ``image`` names the two points of
-    the polygon of which this side is the vector, in proportion, as a bar's images are: see :func:`image`.
+    ``direction`` (``\perp AB``) and ``length`` (``r_2\,\omega_2``) are LaTeX of what is known before the
+    drawing; an empty ``length`` is not known, and neither is an empty ``direction``. ``way``, a complex
+    number of any length, gives the line of a side of known direction where its value may vanish. ``image``
+    names the two points of the polygon of which this side is the vector, in proportion, as a bar's images
+    are: see :func:`image`.
     """
 
     start: str  #: name of an image point, as LaTeX: ``p_v``, ``a``, ``b'``, ``a_4``

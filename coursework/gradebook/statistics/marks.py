@@ -75,8 +75,8 @@ class _Decimals(dict):
 def read(folder: Path) -> Marks:
     """Read a folder of marks: ``marks.csv``, and ``summary.csv`` and ``rejected.csv`` if they are there.
 
-    Points come from ``marks.csv`` alone, so that a mark mended by hand there counts. Questions that do not count, out of 0, are left out. Of a student with several
-    sittings the one counts that the summary names.
+    Points come from ``marks.csv`` alone, so that a mark mended by hand there counts. Questions that do not
+    count, out of 0, are left out. Of a student with several sittings the one counts that the summary names.
 
     Raises
     ------
@@ -115,7 +115,8 @@ class StudentSummary(NamedTuple):
 
 
 def marks_of(lines: Iterable[Line], entries: Mapping[str, StudentSummary], rejected: int = 0) -> Marks:
-    """Return the columns of a class's marks, with the summary of each student; without lines that are out of nothing."""
+    """Return the columns of a class's marks, with the summary of each student; without lines that are out of
+    nothing."""
     return _Columns(line for line in lines if line[5] > 0).marks(entries, rejected)
 
 
@@ -302,7 +303,8 @@ def _places(path: Path, header: Sequence[str], columns: Sequence[str]) -> list[i
     if missing:
         result = ", ".join(n[:30] for n in names if n) or "nothing"
         raise BadInput(
-            "{path} needs the columns {columns}; {missing} missing, found {result}; 'coursework grade' writes them",
+            "{path} needs the columns {columns}; {missing} missing, found {result}; 'coursework grade' "
+            "writes them",
             path=path,
             columns=", ".join(columns),
             missing=", ".join(missing),

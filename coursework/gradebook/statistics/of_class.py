@@ -13,7 +13,8 @@ from coursework.gradebook.statistics.marks import Line, Marks, StudentSummary, m
 def marks_of_class(
     graded: Iterable[Graded], results: Mapping[str, Result], rejected: int, presence: Mapping[str, str]
 ) -> Marks:
-    """Return the columns of a class; for a student with several sittings only those of the one that counts."""
+    """Return the columns of a class; for a student with several sittings only those of the one that
+    counts."""
     text = {s: _summary_of(result, presence.get(s) in (ABSENT, EXCUSED)) for s, result in results.items()}
     return marks_of(_lines(graded, results), text, rejected)
 

@@ -71,7 +71,8 @@ def content_items(
     Raises
     ------
     LTIRefusal
-        Nothing was ticked, more than the platform takes, what is not offered, or a setting that makes no sense.
+        Nothing was ticked, more than the platform takes, what is not offered, or a setting that makes no
+        sense.
     """
     picking = launch.picking
     if picking is None or not picking.links:

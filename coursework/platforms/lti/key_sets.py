@@ -77,7 +77,8 @@ class KeySets:
 
 
 def _usable(stated: Any) -> Any:
-    """Return an RSA key for verification; None for a key of another kind, since a platform may list others."""
+    """Return an RSA key for verification; None for a key of another kind, since a platform may list
+    others."""
     if (
         stated.get("kty") != "RSA"
         or stated.get("use", "sig") != "sig"

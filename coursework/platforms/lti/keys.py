@@ -114,7 +114,8 @@ class KeyFolder:
         return SigningKey(kid, at, path)
 
     def _after_the_last(self) -> float:
-        """Return the earliest time of creation of another key, since the second of creation identifies a key."""
+        """Return the earliest time of creation of another key, since the second of creation identifies a
+        key."""
         if not self.keys:
             return 0.0
         return calendar.timegm(time.strptime(self.keys[-1].made, "%Y%m%dT%H%M%SZ")) + 1.0

@@ -46,11 +46,13 @@ class LinkSettings:
     def custom(self) -> dict[str, str]:
         """Return the custom parameters that state these settings, without those at their defaults."""
         parameters = {
-            "exercise": self.exercise, "assignment": self.assignment, "parts": ",".join(self.parts),
+            "exercise": self.exercise,
+            "assignment": self.assignment,
+            "parts": ",".join(self.parts),
             "tries": "" if self.tries is None else str(self.tries),
             "counts": "" if self.counts == BEST else self.counts,
             "answers": "" if self.answers == NEVER else self.answers,
-        }  # fmt: skip
+        }
         return {name: text for name, text in parameters.items() if text}
 
     @classmethod

@@ -74,9 +74,13 @@ class Login:
     def _to(self, platform: LTIPlatform, hints: dict[str, str]) -> LoginRedirect:
         nonce, value = secrets.token_urlsafe(32), secrets.token_urlsafe(32)
         held = {
-            "use": _USE, "nonce": nonce, "of": [platform.issuer, platform.client_id], "by": _digest(value),
-            "exp": int(self._clock() + self.settings.login_seconds), "hints": hints,
-        }  # fmt: skip
+            "use": _USE,
+            "nonce": nonce,
+            "of": [platform.issuer, platform.client_id],
+            "by": _digest(value),
+            "exp": int(self._clock() + self.settings.login_seconds),
+            "hints": hints,
+        }
         state = jwt.encode(held, self._secret, "HS256")
         query = {
             "scope": "openid",

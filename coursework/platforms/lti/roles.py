@@ -31,8 +31,8 @@ class Role(StrEnum):
         return self in (Role.INSTRUCTOR, Role.ADMIN)
 
 
-#: Roles in the course, by their name after ``membership#``; the first one present counts. Moodle names no assistant,
-#: and its observers are mentors.
+#: Roles in the course, by their name after ``membership#``; the first one present counts. Moodle names no
+#: assistant, and its observers are mentors.
 _IN_COURSE = {
     "Administrator": Role.ADMIN,
     "Instructor": Role.INSTRUCTOR,

@@ -15,7 +15,8 @@ LOG = logging.getLogger("coursework.site")
 _FIRST, _LONGEST = 5.0, 3600.0  #: seconds to the next attempt after one failure, and after many
 _PAUSE = 5.0  #: seconds between two checks
 _CONFLICT = 409
-#: Responses that another attempt will hardly change; it is made at long intervals, in case an administrator fixes the cause.
+#: Responses that another attempt will hardly change; it is made at long intervals, in case an administrator
+#: fixes the cause.
 _HARD = (400, 403, 404, 405, 410, 415, 422)
 
 

@@ -140,14 +140,23 @@ class Services:
     # ------------------------------------------------------------------ requests
 
     def _request(
-        self, platform: LTIPlatform, scopes: Sequence[str], method: str, url: str, *, accept: str = "", kind: str = "", json: Any = None
-    ) -> httpx.Response:  # fmt: skip
+        self,
+        platform: LTIPlatform,
+        scopes: Sequence[str],
+        method: str,
+        url: str,
+        *,
+        accept: str = "",
+        kind: str = "",
+        json: Any = None,
+    ) -> httpx.Response:
         """Return the response of the platform; retry once with a new token if it rejects the cached one."""
         if origin(url) not in platform.services:
             raise NotServed(
                 Message(
                     (
-                        "{platform} names an address at {origin!r}, which is not one of its own: if it is, add it to its "
+                        "{platform} names an address at {origin!r}, which is not one of its own: if it "
+                        "is, add it to its "
                         "'origins' in platforms.toml"
                     ),
                     platform=platform.name,
@@ -211,9 +220,13 @@ class Services:
         """Return the assertion that identifies this tool to a platform, signed with one of its keys."""
         key, now = self._keys.signing, int(time.time())
         claims = {
-            "iss": platform.client_id, "sub": platform.client_id, "aud": platform.audience or platform.token_url,
-            "iat": now, "exp": now + 60, "jti": secrets.token_urlsafe(24),
-        }  # fmt: skip
+            "iss": platform.client_id,
+            "sub": platform.client_id,
+            "aud": platform.audience or platform.token_url,
+            "iat": now,
+            "exp": now + 60,
+            "jti": secrets.token_urlsafe(24),
+        }
         return jwt.encode(claims, key.private, "RS256", headers={"kid": key.kid})
 
     def _sent(self, platform: LTIPlatform, method: str, url: str, **options: Any) -> httpx.Response:

@@ -29,9 +29,9 @@ class LTIPlatform:
     auth_url: str  #: address of logins
     token_url: str  #: address of tokens for grades and rosters
     jwks_url: str  #: its public keys
-    origins: tuple[
-        str, ...
-    ] = ()  #: whose pages may hold ours in a frame, and which have gradebook and roster, besides ``issuer`` and ``auth_url``
+    #: Whose pages may hold ours in a frame, and which have gradebook and roster, besides ``issuer`` and
+    #: ``auth_url``.
+    origins: tuple[str, ...] = ()
     audience: str = ""  #: of a request for a token; ``token_url`` by default
     emails_verified: bool = False  #: it verifies e-mails, so that nobody can use another person's
 

@@ -71,17 +71,24 @@ class Storage:
         """Begin the session of a launch; return its name, and the token that identifies its browser."""
         name, token, now = secrets.token_urlsafe(12), secrets.token_urlsafe(32), self.now
         row = {
-            "name": name, "digest": digest_of(token), "issuer": launch.issuer, "subject": launch.person,
-            "launch": launch.as_plain(), "until": now + timedelta(seconds=seconds),
-        }  # fmt: skip
+            "name": name,
+            "digest": digest_of(token),
+            "issuer": launch.issuer,
+            "subject": launch.person,
+            "launch": launch.as_plain(),
+            "until": now + timedelta(seconds=seconds),
+        }
         with self._store.begin() as connection:
             connection.execute(delete(lti_session).where(lti_session.c.until < now))
             connection.execute(insert(lti_session).values(row))
             if launch.context and launch.memberships:
                 values = {
-                    "issuer": launch.issuer, "client": launch.client_id, "title": launch.context_title,
-                    "memberships": launch.memberships, "seen": now,
-                }  # fmt: skip
+                    "issuer": launch.issuer,
+                    "client": launch.client_id,
+                    "title": launch.context_title,
+                    "memberships": launch.memberships,
+                    "seen": now,
+                }
                 _put(connection, lti_course, {"digest": digest_of(launch.course)}, values)
         return name, token
 
@@ -144,9 +151,16 @@ class Storage:
                     return False
                 now = max(now, row.stamp + _STEP)
             values = {
-                "given": score.given, "maximum": score.maximum, "comment": score.comment, "waits": score.waits,
-                "line": launch.line, "stamp": now, "due": self.now, "failures": 0, "problem": "",
-            }  # fmt: skip
+                "given": score.given,
+                "maximum": score.maximum,
+                "comment": score.comment,
+                "waits": score.waits,
+                "line": launch.line,
+                "stamp": now,
+                "due": self.now,
+                "failures": 0,
+                "problem": "",
+            }
             connection.execute(update(lti_launch).where(lti_launch.c.id == row.id).values(values))
         return True
 

@@ -46,9 +46,14 @@ def verified(token: str, settings: Settings, keys: KeySets, expected: LTIPlatfor
             raise LTIRefusal("signature", 401, f"signed by {str(header.get('alg'))[:20]!r}")
         key = keys.key(expected, str(header.get("kid", "")))
         claims = jwt.decode(
-            token, key, algorithms=["RS256"], audience=expected.client_id, issuer=expected.issuer, leeway=_SLACK,
+            token,
+            key,
+            algorithms=["RS256"],
+            audience=expected.client_id,
+            issuer=expected.issuer,
+            leeway=_SLACK,
             options={"require": _NEEDED},
-        )  # fmt: skip
+        )
     except jwt.PyJWTError as fault:
         why, status = next((why, status) for kind, why, status in _FAULTS if isinstance(fault, kind))
         raise LTIRefusal(why, status, f"{expected.name}: {type(fault).__name__}") from None

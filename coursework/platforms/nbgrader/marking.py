@@ -44,7 +44,8 @@ class MarkedNotebook:
             warn(
                 Message(
                     (
-                        "{name} is worth {most:g} points in nbgrader's database and {out_of:g} as issued; run nbgrader "
+                        "{name} is worth {most:g} points in nbgrader's database and {out_of:g} as "
+                        "issued; run nbgrader "
                         "generate_assignment again"
                     ),
                     name=name,

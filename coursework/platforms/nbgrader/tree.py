@@ -83,7 +83,8 @@ def files(
     Raises
     ------
     BadInput
-        One notebook for the class is impossible: several languages, variants without a roster, or variants that ask different parts.
+        One notebook for the class is impossible: several languages, variants without a roster, or variants
+        that ask different parts.
     """
     for nb_assignment in _assignments(issues, assignment):
         check(nb_assignment)
@@ -114,7 +115,8 @@ def check(nb_assignment: NbAssignment) -> None:
     Raises
     ------
     BadInput
-        Several languages, variants without a roster, or variants that ask different parts; the message gives the remedy.
+        Several languages, variants without a roster, or variants that ask different parts; the message gives
+        the remedy.
     """
     langs = dict.fromkeys(lang for issue in nb_assignment.issues for lang in issue.langs)
     if len(langs) > 1 and any(len(issue.langs) > 1 for issue in nb_assignment.issues):
@@ -126,7 +128,8 @@ def check(nb_assignment: NbAssignment) -> None:
     if nb_assignment.has_personal_variants and not nb_assignment.has_roster:
         raise BadInput(
             (
-                "nbgrader has one notebook of {name} for a class: one variant, or one for each student with --roster "
+                "nbgrader has one notebook of {name} for a class: one variant, or one for each student "
+                "with --roster "
                 "FILE.csv; found {variants} without a student"
             ),
             name=nb_assignment.name,
@@ -142,12 +145,14 @@ def check(nb_assignment: NbAssignment) -> None:
             advice: str = Message("name parts that all of them ask, or give everybody the same variant")
             if everywhere:
                 advice = Message(
-                    "name parts that all of them ask, such as --parts {parts}, or give everybody the same variant",
+                    "name parts that all of them ask, such as --parts {parts}, or give everybody the "
+                    "same variant",
                     parts=",".join(sorted(everywhere)),
                 )
             raise BadInput(
                 (
-                    "the variants of {exercise} ask different parts, and nbgrader has the same cells for a class: "
+                    "the variants of {exercise} ask different parts, and nbgrader has the same cells "
+                    "for a class: "
                     "{advice}"
                 ),
                 exercise=exercise,
@@ -228,13 +233,17 @@ def _bytes(book: Mapping[str, Any]) -> bytes:
 
 def _next_steps(nb_assignment: NbAssignment, lang: str) -> str:
     texts = words(lang)["nbgrader"]
-    text = str(texts["go_on"]).strip().format(
-        name=nb_assignment.name,
-        notebook=nb_assignment.name,
-        install=pip_install(extra="nbgrader"),
-        variants=texts["each" if nb_assignment.has_personal_variants else "one"],
-        student=texts["known" if nb_assignment.has_roster else "anybody"],
-    )  # fmt: skip
+    text = (
+        str(texts["go_on"])
+        .strip()
+        .format(
+            name=nb_assignment.name,
+            notebook=nb_assignment.name,
+            install=pip_install(extra="nbgrader"),
+            variants=texts["each" if nb_assignment.has_personal_variants else "one"],
+            student=texts["known" if nb_assignment.has_roster else "anybody"],
+        )
+    )
     return f"{text}\n"
 
 
@@ -243,7 +252,8 @@ def _config(folder: Folder, out: Path) -> str:
     course = "" if folder.label == "the built-in course" else _relative_path(folder.root, out / FOLDER)
     named = f", course={course!r}" if course else ""
     return (
-        "# A course of nbgrader, written by coursework build. What is not of coursework is run and marked by nbgrader as ever.\n"
+        "# A course of nbgrader, written by coursework build. What is not of coursework is run and "
+        "marked by nbgrader as ever.\n"
         "from pathlib import Path\n\n"
         "from coursework.nbgrader import configure\n\n"
         f"configure(get_config(), Path(__file__).parent{named})  # noqa: F821\n"

@@ -158,7 +158,8 @@ def _chapter(
 
 
 def _paper(course: Course[Any], chapter: Chapter, lang: str, seed: int) -> tuple[BookExercise, ...]:
-    """Return an examination paper on a chapter: the last exercise of each section, then those before, with numbers of their own."""
+    """Return an examination paper on a chapter: the last exercise of each section, then those before, with
+    numbers of their own."""
     rows = zip_longest(*(reversed(section.exercises) for section in chapter.sections))
     chosen: list[BookExercise] = []
     points = 0.0

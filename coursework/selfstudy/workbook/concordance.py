@@ -1,4 +1,5 @@
-"""Words of the index that are found in the lessons: those of the glossary, persons and machines, at their first place in each lesson."""
+"""Words of the index that are found in the lessons: those of the glossary, persons and machines, at their
+first place in each lesson."""
 
 from __future__ import annotations
 
@@ -18,7 +19,8 @@ _ENDING = {"en": r"(?:e?s)?", "fr": r"(?:s|x|es)?"}
 
 @dataclass(frozen=True)
 class SoughtEntry:
-    """Entry of an index and the words under which it is found; ``list`` is that of terms or that of machines."""
+    """Entry of an index and the words under which it is found; ``list`` is that of terms or that of
+    machines."""
 
     list: str  #: word or machine
     entry: str
@@ -68,7 +70,8 @@ def machine_entries(folder: Folder, lang: str) -> tuple[MachineEntry, ...]:
 
 
 def with_entries(lesson: LessonText, sought: Iterable[SoughtEntry]) -> LessonText:
-    """Return a lesson whose words of the index are marked, ``[word](#word "entry")``, where each is met first."""
+    """Return a lesson whose words of the index are marked, ``[word](#word "entry")``, where each is met
+    first."""
     marks = _Marks(sought, lesson.lang)
     return replace(lesson, pieces=tuple(map(marks.marked, lesson.pieces)), words=tuple(marks.met))
 

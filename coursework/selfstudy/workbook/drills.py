@@ -1,7 +1,7 @@
 """Drills of a lesson: questions of two minutes, drawn from variants of its exercises.
 
-A drill asks one quantity and gives what its formula takes: one step back, two steps, or the data alone. The answer is computed
-from the numbers as printed, so that who puts them in finds the digits of the book.
+A drill asks one quantity and gives what its formula takes: one step back, two steps, or the data alone. The
+answer is computed from the numbers as printed, so that who puts them in finds the digits of the book.
 """
 
 from __future__ import annotations
@@ -91,7 +91,8 @@ def drills_of(
 
 
 def judgements_of(folder: Folder, lesson: LessonText) -> tuple[Judgement, ...]:
-    """Return the sentences of a lesson to be judged true or false, as ``exercises/book/true_or_false.toml`` states them.
+    """Return the sentences of a lesson to be judged true or false, as ``exercises/book/true_or_false.toml``
+    states them.
 
     Raises
     ------
@@ -147,7 +148,8 @@ def _fill(
 
 
 def _in_turn(drawn: Mapping[str, Sequence[Variant]], grade: int) -> Iterator[tuple[Variant, Part]]:
-    """Yield questions of each exercise in turn, of another variant each time; a grade begins with others than the one before."""
+    """Yield questions of each exercise in turn, of another variant each time; a grade begins with others than
+    the one before."""
     rows = []
     for variants in drawn.values():
         asked = [[p for p in variant.parts if p.kind in _MEASURED and not p.judge] for variant in variants]
@@ -198,7 +200,8 @@ def _drill(variant: Variant, part: Part, grade: int) -> Drill | None:
 
 
 def _data(variant: Variant, quantity: str, grade: int) -> list[str]:
-    """Return the names of what a drill of a grade gives; nothing where none leads to the quantity in so many formulas.
+    """Return the names of what a drill of a grade gives; nothing where none leads to the quantity in so many
+    formulas.
 
     A sheet names what is given and what is asked: nothing else can be given in a drill.
     """
@@ -219,7 +222,8 @@ def _data(variant: Variant, quantity: str, grade: int) -> list[str]:
 
 
 def _known(variant: Variant, quantities: Sequence[str], steps: set[str]) -> tuple[str, ...]:
-    """Return what the sheet names of the needs of some quantities; what it does not name is seen through, as further steps."""
+    """Return what the sheet names of the needs of some quantities; what it does not name is seen through, as
+    further steps."""
     asked = {part.quantity for part in variant.parts}
     names: dict[str, None] = {}
     for quantity in quantities:

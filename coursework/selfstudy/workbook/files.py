@@ -1,4 +1,5 @@
-"""Files of a workbook: one PDF, pages, and notebooks with pictures, collapsed answers, and links to one another."""
+"""Files of a workbook: one PDF, pages, and notebooks with pictures, collapsed answers, and links to one
+another."""
 
 from __future__ import annotations
 
@@ -40,7 +41,8 @@ def lesson_notebook(
     course, name, lang
         An open course, a lesson of it, a language.
     beside
-        The lessons and exercises whose notebooks stand beside it: links lead to these alone. All of the course unless told.
+        The lessons and exercises whose notebooks stand beside it: links lead to these alone. All of the
+        course unless told.
 
     Raises
     ------

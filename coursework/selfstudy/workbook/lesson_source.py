@@ -1,8 +1,11 @@
-"""Lesson's file: prose, cells, answers to questions and pictures in order, proofread for what a book cannot print.
+"""Lesson's file: prose, cells, answers to questions and pictures in order, proofread for what a book cannot
+print.
 
-A lesson is Markdown. A ```` ```python ```` fence is a cell, with ``{tags=…}`` after the word; a ```` ```answer ```` fence is the answer to the question
-above it; a picture stands on a line of its own, ``![caption](figure:NAME)`` or ``![caption](exercise:NAME?seed=3)``. Links lead to
-``exercise:NAME``, ``lesson:NAME`` and ``lesson:NAME#3``, ``[the figure](figure:NAME)`` cites a figure of the lesson by its number, and ``[a term](#index "entry")`` is a term of the book's index.
+A lesson is Markdown. A ```` ```python ```` fence is a cell, with ``{tags=…}`` after the word; a
+```` ```answer ```` fence is the answer to the question above it; a picture stands on a line of its own,
+``![caption](figure:NAME)`` or ``![caption](exercise:NAME?seed=3)``. Links lead to ``exercise:NAME``,
+``lesson:NAME`` and ``lesson:NAME#3``, ``[the figure](figure:NAME)`` cites a figure of the lesson by its
+number, and ``[a term](#index "entry")`` is a term of the book's index.
 """
 
 from __future__ import annotations
@@ -20,7 +23,8 @@ from coursework.markup.markdown import INDEX, tree
 from coursework.markup.proofreading import pair_dollars, read_formulas
 
 SHOWN, NOTEBOOK, STILL = "shown", "notebook", "still"
-#: What a cell's tags say: its code is printed; it stands in the notebook alone; its code is printed and not run for the book.
+#: What a cell's tags say: its code is printed; it stands in the notebook alone; its code is printed and not
+#: run for the book.
 TAGS = (SHOWN, NOTEBOOK, STILL)
 
 
@@ -148,7 +152,8 @@ def _check_opening(text: str, position: str) -> None:
     match = _OPENED.fullmatch(text)
     if match is None:
         raise BadCourse(
-            f"{position}: a fence opens with a word, and tags if wanted: python {{tags=shown}}; found {text!r}"
+            f"{position}: a fence opens with a word, and tags if wanted: python {{tags=shown}}; found "
+            f"{text!r}"
         )
     word = match[1]
     if word not in _WORDS and (near := closest(word.lower(), _WORDS)):
@@ -159,7 +164,8 @@ def _image(image: re.Match[str], file: str, line: int) -> LessonImage:
     target = _TARGET.fullmatch(image["target"])
     if target is None:
         raise BadCourse(
-            f"{file}, line {line}: the picture {image['target']!r}: write figure:NAME, or exercise:NAME?seed=3"
+            f"{file}, line {line}: the picture {image['target']!r}: write figure:NAME, or "
+            "exercise:NAME?seed=3"
         )
     pairs = (item.partition("=") for item in filter(None, (target[3] or "").split("&")))
     return LessonImage(
@@ -173,7 +179,8 @@ def with_figures(text: str, write: Callable[[str, str], str]) -> str:
 
 
 def mistakes_shown(cell: CodeCell) -> Iterator[tuple[str, str]]:
-    """Yield the exercise and the name of each mistake that a cell shows by ``coursework.mistakes("EXERCISE", "NAME")``."""
+    """Yield the exercise and the name of each mistake that a cell shows by
+    ``coursework.mistakes("EXERCISE", "NAME")``."""
     for call in ast.walk(ast.parse(cell.code)):
         if (
             isinstance(call, ast.Call)
@@ -205,7 +212,8 @@ def proofread(results: Sequence[Block], file: str) -> None:
     Raises
     ------
     BadCourse
-        It does not begin with its title, or has two; a section stands twice; a formula, a fence, a picture or a link is none.
+        It does not begin with its title, or has two; a section stands twice; a formula, a fence, a picture or
+        a link is none.
     """
     _check_title(results, file)
     sections: set[str] = set()

@@ -60,8 +60,8 @@ def opened(course: Course[Any], name: str, lang: str) -> LessonFile:
     UnknownName
         No such lesson.
     BadCourse
-        It is not written in this language; a formula, a fence or a picture is none; a link names an exercise, a lesson or a section that
-        there is not.
+        It is not written in this language; a formula, a fence or a picture is none; a link names an exercise,
+        a lesson or a section that there is not.
     """
     path = lesson_file(course.folder, name, lang)
     file = course.folder.relative(path)
@@ -77,7 +77,8 @@ def opened(course: Course[Any], name: str, lang: str) -> LessonFile:
 
 
 def _with_values(folder: Folder, name: str, text: str, file: str) -> str:
-    r"""Return a lesson's text with ``{=NAME}`` replaced by ``\num{…}`` of what ``values()`` of its module computes.
+    r"""Return a lesson's text with ``{=NAME}`` replaced by ``\num{…}`` of what ``values()`` of its module
+    computes.
 
     Raises
     ------
@@ -254,17 +255,20 @@ def _check_link(folder: Folder, link: TextLink, lang: str, position: str) -> Non
     known_names = folder.names if link.kind == "exercise" else folder.lessons
     if link.name not in known_names:
         raise BadCourse(
-            f"{position}: a link to the {link.kind} {link.name!r}, which there is not{nearest(link.name, known_names)}"
+            f"{position}: a link to the {link.kind} {link.name!r}, which there is "
+            f"not{nearest(link.name, known_names)}"
         )
     if link.section and link.section not in (there := lesson_sections(folder, link.name, lang)):
         numbers = ", ".join(map(str, there)) or "none"
         raise BadCourse(
-            f"{position}: a link to section {link.section} of {link.name}, which it has not; there is {numbers}"
+            f"{position}: a link to section {link.section} of {link.name}, which it has not; there is "
+            f"{numbers}"
         )
 
 
 def explained_mistakes(course: Course[Any], lang: str) -> Mapping[tuple[str, str], tuple[str, int]]:
-    """Return the first lesson and section whose cells explain a named mistake, by exercise and mistake; nothing is run.
+    """Return the first lesson and section whose cells explain a named mistake, by exercise and mistake;
+    nothing is run.
 
     A lesson that is not written in the language is left out.
     """
@@ -334,7 +338,8 @@ def _titles(chapter: Chapter) -> Iterator[tuple[str, Mapping[str, str]]]:
 def _cut_formulas(text: str, name: str, lang: str) -> list[str]:
     """Return the table rows in which a bar inside a formula ends the cell."""
     return [
-        f"{name}, {lang}, line {k}: a bar inside a formula ends the cell of a table; write \\lvert, \\rvert or \\mid: {line.strip()}"
+        f"{name}, {lang}, line {k}: a bar inside a formula ends the cell of a table; write \\lvert, "
+        f"\\rvert or \\mid: {line.strip()}"
         for k, line in enumerate(text.splitlines(), 1)
         if line.lstrip().startswith("|") and any(cell.count("$") % 2 for cell in _CELL.split(line))
     ]

@@ -1,4 +1,5 @@
-"""Pages of a book before its first chapter and after its last one: texts, and tables of notation, joints, words and persons."""
+"""Pages of a book before its first chapter and after its last one: texts, and tables of notation, joints,
+words and persons."""
 
 from __future__ import annotations
 
@@ -28,7 +29,8 @@ def title_page(folder: Folder, lang: str) -> TitlePage:
 
 
 def matter_of(folder: Folder, lang: str, place: str) -> tuple[LessonText, ...]:
-    """Return the pages at a place of the book, ``front`` or ``back``, in the order of ``exercises/book/matter.toml``.
+    """Return the pages at a place of the book, ``front`` or ``back``, in the order of
+    ``exercises/book/matter.toml``.
 
     A name is that of a table or of a text ``NAME.LANG.md`` beside it.
 
@@ -106,7 +108,8 @@ def _glossary(folder: Folder, stated: Mapping[str, Any], lang: str) -> tuple[Pie
 def _people(folder: Folder, stated: Mapping[str, Any], lang: str) -> tuple[Piece, ...]:
     people = sorted(stated["people"], key=lambda row: bare_letters(person_entry(row, lang)))
     lines = (
-        f'- **[{person_name(row, lang)}](#word "{person_entry(row, lang)}")** ({_years(row, lang)}). {_capital(row[lang])}'
+        f'- **[{person_name(row, lang)}](#word "{person_entry(row, lang)}")** ({_years(row, lang)}). '
+        f"{_capital(row[lang])}"
         for row in people
     )
     return (ProsePiece("\n".join(lines)),)

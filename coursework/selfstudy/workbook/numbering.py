@@ -1,6 +1,8 @@
-"""Numbers of what a lesson shows: figures, tables, equations, examples, definitions and rules, counted from its own text.
+"""Numbers of what a lesson shows: figures, tables, equations, examples, definitions and rules, counted from
+its own text.
 
-Nothing is numbered by hand: what is added or moved is numbered anew, in the book, in its pages and on the site alike.
+Nothing is numbered by hand: what is added or moved is numbered anew, in the book, in its pages and on the
+site alike.
 """
 
 from __future__ import annotations
@@ -22,7 +24,10 @@ _EQUATION = re.compile(r"^\$\$(?:.|\n)+?\$\$$", re.MULTILINE)
 _PARAGRAPH = re.compile(r"\n[ \t]*\n+")
 _FENCE = re.compile(r"^```", re.MULTILINE)
 _QUOTED = re.compile(r"^> ?", re.MULTILINE)
-_FORM = 'definitions = [{ en = "crank" }], rules = [{ title = { en = "Grashof" }, words = { en = "makes whole turns" } }]'
+_FORM = (
+    'definitions = [{ en = "crank" }], rules = [{ title = { en = "Grashof" }, words = { en = "makes whole '
+    'turns" } }]'
+)
 
 
 def around_tables(text: str) -> Iterator[tuple[str, str]]:
@@ -112,7 +117,8 @@ class LessonNumbers:
             yield piece
 
     def prose(self, text: str) -> Iterator[Piece]:
-        """Yield running text: its tables apart, its definitions and rules in boxes, its displayed formulas numbered."""
+        """Yield running text: its tables apart, its definitions and rules in boxes, its displayed formulas
+        numbered."""
         if _FENCE.search(text):
             yield ProsePiece(text)
             return

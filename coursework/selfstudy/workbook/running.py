@@ -78,7 +78,8 @@ def _of_lesson(course: Course[Any], lesson: str, image: LessonImage, lang: str) 
     if isinstance(created, Sequence) and created and all(isinstance(item, Figure) for item in created):
         return replace(_moving(created, text, image.caption, lang), on_paper=on_paper)
     raise BadCourse(
-        f"{image.name}() gives a Figure, a Picture, or a list of Figures that follow one another; found {short(created)}"
+        f"{image.name}() gives a Figure, a Picture, or a list of Figures that follow one another; "
+        f"found {short(created)}"
     )
 
 
@@ -184,7 +185,8 @@ class CellSession:
         Raises
         ------
         BadCourse
-            It is no Python, it raises, it ends Python, or it prints what no book could; the message has the line of the lesson.
+            It is no Python, it raises, it ends Python, or it prints what no book could; the message has the
+            line of the lesson.
         """
         printed = io.StringIO()
         try:
@@ -215,7 +217,10 @@ class CellSession:
         location = f"{self._file}, line {self._line(fault, cell)}"
         if isinstance(fault, SystemExit):
             return f"{location}: the cell ends Python; a lesson's cells run to their last line"
-        return f"{location}: {fault if isinstance(fault, CourseworkError) else f'{type(fault).__name__}: {fault}'}"
+        return (
+            f"{location}: "
+            f"{fault if isinstance(fault, CourseworkError) else f'{type(fault).__name__}: {fault}'}"
+        )
 
     def _line(self, fault: BaseException, cell: CodeCell) -> int:
         selected = [

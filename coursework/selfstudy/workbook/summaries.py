@@ -1,4 +1,5 @@
-"""Summary of a lesson for a page that is cut out: its formulas as the lesson states them, conditions, sign rules, traps."""
+"""Summary of a lesson for a page that is cut out: its formulas as the lesson states them, conditions, sign
+rules, traps."""
 
 from __future__ import annotations
 
@@ -18,7 +19,8 @@ RULES = ("conditions", "signs", "traps")
 
 
 def summary_of(folder: Folder, lesson: LessonText) -> SummaryCard | None:
-    """Return the summary of a lesson, as ``exercises/book/summaries.toml`` states it; None where it states none.
+    """Return the summary of a lesson, as ``exercises/book/summaries.toml`` states it; None where it states
+    none.
 
     Raises
     ------

@@ -1,4 +1,5 @@
-"""Page of the evening after an exam: what is left, what a change of a question or of the scale makes of the marks."""
+"""Page of the evening after an exam: what is left, what a change of a question or of the scale makes of the
+marks."""
 
 from __future__ import annotations
 
@@ -70,8 +71,8 @@ def exam_of(now: ClassState) -> Exam:
 
 
 def after_exam(request: Request) -> Response:
-    """Return the page; with a change in the address its preview; a form confirms it, puts non-answers away, or takes the
-    last step back."""
+    """Return the page; with a change in the address its preview; a form confirms it, puts non-answers away,
+    or takes the last step back."""
     now = class_here(request)
     if not request.is_post:
         fields = {name: request.query_params.get(name, "") for name in (*_FIELDS, "undo")}
@@ -99,8 +100,8 @@ def own_file(course: Course, name: str) -> Path:
 
 
 def _restated(request: Request, now: ClassState, exam: Exam, source: str) -> Restated:
-    """Return how the assignment's file differs from what was issued: the file that was sent, or else that of its name in the
-    folder of the course. Without either nothing differs.
+    """Return how the assignment's file differs from what was issued: the file that was sent, or else that of
+    its name in the folder of the course. Without either nothing differs.
 
     Raises
     ------
@@ -164,7 +165,8 @@ def _undone(exam: Exam, asked: str) -> Sequence[Decision]:
 
 
 def _undone_texts(exam: Exam, undone: Sequence[Decision], lang: str, tense: str) -> list[str]:
-    """Return a line for each decision that is taken back, the last first; one for all answers of students together."""
+    """Return a line for each decision that is taken back, the last first; one for all answers of students
+    together."""
     texts = words(lang)["after"]
     batches = after_words.batch_texts(exam, (one for one in undone if not one.student), lang)
     lines = [text for _, text in reversed(batches)]
@@ -274,7 +276,8 @@ def _page(request: Request, now: ClassState, fields: Mapping[str, str], message:
 
 
 def _errors(exam: Exam, lang: str) -> list[tuple[str, str, int]]:
-    """Return the errors whose price may change, in words and with the number of answers: families, then those of the class."""
+    """Return the errors whose price may change, in words and with the number of answers: families, then those
+    of the class."""
     counts: Counter[str] = Counter()
     exercise_of: dict[str, str] = {}
     for graded in exam.machine:

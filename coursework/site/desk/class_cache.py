@@ -149,9 +149,20 @@ def _read(
     cached.measured.update(_measured(course, issued, [machine[p] for p in new], [numbers[p] for p in new]))
     faults = {sheet: marking for sheet, marking in outcomes.items() if isinstance(marking, str)}
     return ClassState(
-        course, about, issued, at, machine, numbers, cached.measured, sheets, faults, decisions,
-        placed_by_hand, site_submissions_of(connection, about.id), charged,
-    )  # fmt: skip
+        course,
+        about,
+        issued,
+        at,
+        machine,
+        numbers,
+        cached.measured,
+        sheets,
+        faults,
+        decisions,
+        placed_by_hand,
+        site_submissions_of(connection, about.id),
+        charged,
+    )
 
 
 def _has_come(at: Stamp, about: AssignmentOverview) -> tuple[Any, ...]:
@@ -191,8 +202,8 @@ def class_within(site: Site, number: int, students: frozenset[str] | None) -> Cl
 
 
 def students_here(request: Request, number: int) -> frozenset[str] | None:
-    """Return the students of an assignment whom a page shows: those whom the user may see, of the group that the
-    query names; None for the whole class."""
+    """Return the students of an assignment whom a page shows: those whom the user may see, of the group that
+    the query names; None for the whole class."""
     wanted = group_key(request.query_params.get(CLASS_GROUP, ""))
     with request.site.store.reading() as connection:
         within = students_within(connection, request.user, number)
@@ -205,8 +216,8 @@ def students_here(request: Request, number: int) -> frozenset[str] | None:
 def assignments_marked(
     request: Request, connection: Connection
 ) -> list[tuple[AssignmentOverview, frozenset[str] | None]]:
-    """Return the assignments in which the user marks somebody, the latest first, each with the students within whom they
-    may; None for the whole class."""
+    """Return the assignments in which the user marks somebody, the latest first, each with the students
+    within whom they may; None for the whole class."""
     found = []
     for about in listed_assignments(connection):
         if request.user.may(Permission.MARKS_READ, about.id):
@@ -225,10 +236,17 @@ def _groups_here(request: Request, number: int) -> dict[str, str]:
 
 
 def class_page_of(request: Request, now: Any, template: str, tab: str, **names: Any) -> Response:
-    """Return an instructor's page of one assignment, under its heading; ``now`` is its state or its table. Groups are read
-    by the pages that offer them."""
+    """Return an instructor's page of one assignment, under its heading; ``now`` is its state or its table.
+    Groups are read by the pages that offer them."""
     group = group_key(request.query_params.get(CLASS_GROUP, ""))
     return request.render(
-        template, now=now, tab=tab, heading=now.about.title(request.lang), class_group=group,
-        sees_all=groups_within(request.user, now.about.id) is None, class_groups=cache(partial(_groups_here, request, now.about.id)), group_query=urlencode({CLASS_GROUP: group}) if group else "", **names,
-    )  # fmt: skip
+        template,
+        now=now,
+        tab=tab,
+        heading=now.about.title(request.lang),
+        class_group=group,
+        sees_all=groups_within(request.user, now.about.id) is None,
+        class_groups=cache(partial(_groups_here, request, now.about.id)),
+        group_query=urlencode({CLASS_GROUP: group}) if group else "",
+        **names,
+    )

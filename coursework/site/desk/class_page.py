@@ -31,10 +31,21 @@ def class_page(request: Request) -> Response:
     selected = sorted((row for row in table_rows if _matches(row, sought)), key=_sorting(now, sort))
     page = page_of(request, selected)
     return class_page_of(
-        request, now, "site/instructor/class", "class", page=page, rows=page.rows, all_rows=len(table_rows), sort=sort, sought=sought,
-        handed_in=sum(row.handed_in for row in table_rows), has_mark=now.has_mark,
-        has_late=any(row.late for row in table_rows), means=now.means, **_words(request),
-    )  # fmt: skip
+        request,
+        now,
+        "site/instructor/class",
+        "class",
+        page=page,
+        rows=page.rows,
+        all_rows=len(table_rows),
+        sort=sort,
+        sought=sought,
+        handed_in=sum(row.handed_in for row in table_rows),
+        has_mark=now.has_mark,
+        has_late=any(row.late for row in table_rows),
+        means=now.means,
+        **_words(request),
+    )
 
 
 def news(request: Request) -> Response:
@@ -56,10 +67,15 @@ def news(request: Request) -> Response:
     if "" in changed or now.about.stated.get("anonymous"):
         return redirect(f"/desk/{now.about.id}")
     return request.render(
-        "site/instructor/_news", now=now, rows=[row for row in table_rows if row.student in changed], all_rows=len(table_rows),
-        handed_in=sum(row.handed_in for row in table_rows), has_mark=now.has_mark,
-        has_late=request.query_params.get("late") == "1" or any(row.late for row in table_rows), **_words(request),
-    )  # fmt: skip
+        "site/instructor/_news",
+        now=now,
+        rows=[row for row in table_rows if row.student in changed],
+        all_rows=len(table_rows),
+        handed_in=sum(row.handed_in for row in table_rows),
+        has_mark=now.has_mark,
+        has_late=request.query_params.get("late") == "1" or any(row.late for row in table_rows),
+        **_words(request),
+    )
 
 
 def _words(request: Request) -> dict[str, Any]:

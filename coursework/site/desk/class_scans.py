@@ -99,11 +99,18 @@ def class_scans(site: Site, number: int) -> ClassScans:
     )
     pages = with_copies(
         as_told(
-            Scanned(ScannedFile(row.file, row.page.partition("-")[0], 0), row.number, row.page, page_of(row.kept) or _GONE),
-            papers, typed, LEAST,
+            Scanned(
+                ScannedFile(row.file, row.page.partition("-")[0], 0),
+                row.number,
+                row.page,
+                page_of(row.kept) or _GONE,
+            ),
+            papers,
+            typed,
+            LEAST,
         )
         for row in rows
-    )  # fmt: skip
+    )
     return ClassScans(papers, tuple(pages), typed)
 
 

@@ -133,11 +133,21 @@ def _row(
         else 0
     )
     return ClassRow(
-        number, now.shown(student), identity, tuple(cells.get(question, BLANK) for question in now.questions),
-        result.points, result.out_of, mark_of(now.adjusted, result.counts, result.out_of),
-        tries, submitted.late if submitted else 0, bool(cells) or submitted is not None, result.open,
-        result.counts, submitted is not None, now.presence.get(student, ""),
-    )  # fmt: skip
+        number,
+        now.shown(student),
+        identity,
+        tuple(cells.get(question, BLANK) for question in now.questions),
+        result.points,
+        result.out_of,
+        mark_of(now.adjusted, result.counts, result.out_of),
+        tries,
+        submitted.late if submitted else 0,
+        bool(cells) or submitted is not None,
+        result.open,
+        result.counts,
+        submitted is not None,
+        now.presence.get(student, ""),
+    )
 
 
 def _means(now: ClassState, table_rows: Sequence[ClassRow]) -> list[str]:
@@ -281,12 +291,25 @@ def _content(now: ClassState) -> str:
     for row in table_rows:
         own = [cells.setdefault(cell, len(cells)) for cell in row.cells]
         rest = (
-            row.points, row.out_of, row.mark, row.tries, row.late, row.handed_in, row.open, row.counts, row.on_site, row.presence,
-        )  # fmt: skip
+            row.points,
+            row.out_of,
+            row.mark,
+            row.tries,
+            row.late,
+            row.handed_in,
+            row.open,
+            row.counts,
+            row.on_site,
+            row.presence,
+        )
         lines.append([row.student, row.identity, own, *rest])
     questions = [[exercise, part, now.number(exercise, part)] for exercise, part in now.questions]
     scale = (now.adjusted.assignment or {}).get("mark") or {}
     content = {
-        "questions": questions, "means": _means(now, table_rows), "cells": list(cells), "rows": lines, "of": scale.get("of", 0),
-    }  # fmt: skip
+        "questions": questions,
+        "means": _means(now, table_rows),
+        "cells": list(cells),
+        "rows": lines,
+        "of": scale.get("of", 0),
+    }
     return json.dumps(content)

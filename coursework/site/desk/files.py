@@ -74,9 +74,19 @@ def files_page(
         if not submission.number
     ]
     return class_page_of(
-        request, now, "site/instructor/files", "files", told=list(messages), files=files[::-1][:50], rejected=now.rejected,
-        platforms=PLATFORMS.values(), scores=SCORES, downloads=list(_tables(request, now)), filled=_filled(request, filled, name), strangers=_strangers(now),
-    )  # fmt: skip
+        request,
+        now,
+        "site/instructor/files",
+        "files",
+        told=list(messages),
+        files=files[::-1][:50],
+        rejected=now.rejected,
+        platforms=PLATFORMS.values(),
+        scores=SCORES,
+        downloads=list(_tables(request, now)),
+        filled=_filled(request, filled, name),
+        strangers=_strangers(now),
+    )
 
 
 def _strangers(now: ClassState) -> list[list[UnplacedRow]]:
@@ -299,8 +309,8 @@ _TABLES: Mapping[str, Callable[[Request, ClassState], bytes]] = {
 
 
 def _tables(request: Request, now: ClassState) -> Mapping[str, Callable[[Request, ClassState], bytes]]:
-    """Return the makers of the tables of a class; of a part of it, those that name nobody else. What tells whose a
-    code is goes to a publisher alone."""
+    """Return the makers of the tables of a class; of a part of it, those that name nobody else. What tells
+    whose a code is goes to a publisher alone."""
     tells_whose = not now.codes or request.user.may(Permission.ASSIGNMENTS_PUBLISH, now.about.id, "")
     has_record = now.is_whole and tells_whose
     return _TABLES if has_record else {name: make for name, make in _TABLES.items() if name != "issued.json"}
@@ -393,9 +403,16 @@ def gradebook(request: Request) -> Response:
                 scored = [entry for entry in scored if not entry.open]
             most = form.text("most").strip().replace(",", ".")
             filled = read_apart(
-                DESK_FILES, request.words["refused"]["too_much"], uploads.filled_in, platform.name, path, form.text("item").strip(), scored,
-                float(most) if most else None, bool(form.text("zeros")),
-            )  # fmt: skip
+                DESK_FILES,
+                request.words["refused"]["too_much"],
+                uploads.filled_in,
+                platform.name,
+                path,
+                form.text("item").strip(),
+                scored,
+                float(most) if most else None,
+                bool(form.text("zeros")),
+            )
         except ValueError as fault:
             if isinstance(fault, CourseworkError):
                 raise BadInput(
@@ -404,8 +421,11 @@ def gradebook(request: Request) -> Response:
             raise BadInput(texts["no_number"]) from None
     messages = [texts["filled"].format(filled.written, filled.column)]
     outcomes = {
-        "strangers": filled.strangers, "unclear": filled.unclear, "absent": filled.absent, "kept": filled.unchanged,
-    }  # fmt: skip
+        "strangers": filled.strangers,
+        "unclear": filled.unclear,
+        "absent": filled.absent,
+        "kept": filled.unchanged,
+    }
     outcomes["provisional" if form.text("provisional") else "left_out"] = tuple(waiting)
     messages += [texts[key].format(len(names), _list(names)) for key, names in outcomes.items() if names]
     return files_page(request, messages, filled, file_name(sent))

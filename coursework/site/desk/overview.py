@@ -83,7 +83,8 @@ def _clock_text(request: Request, leap: Leap) -> str:
 
 
 def _tile(request: Request, about: AssignmentOverview) -> Tile:
-    """Return the tile of an assignment that has changed; with the reason if the course of the site cannot mark it."""
+    """Return the tile of an assignment that has changed; with the reason if the course of the site cannot
+    mark it."""
     try:
         whole = _is_whole(request, about)
         table = computed_table(request.site, about.id) if whole else table_here(request, about.id)

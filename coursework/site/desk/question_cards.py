@@ -128,7 +128,8 @@ def steps(out_of: float) -> tuple[float, ...]:
 
 
 def sign_of(mark: Mark) -> str:
-    """Return the state of an answer for a table: ``full``, ``part``, ``none``, ``wait`` or ``missing``; empty where it does not count."""
+    """Return the state of an answer for a table: ``full``, ``part``, ``none``, ``wait`` or ``missing``; empty
+    where it does not count."""
     if mark.verdict == "missing":
         return "missing"
     if mark.verdict in WAITING:

@@ -81,7 +81,8 @@ class DistinctAnswer:
 
 
 def question(request: Request) -> Response:
-    """Return the page of one question: its figures, its mistakes, and the answers, the most frequent first."""
+    """Return the page of one question: its figures, its mistakes, and the answers, the most frequent
+    first."""
     now = class_here(request)
     exercise, part = request.query_params.get("exercise", ""), request.query_params.get("part", "")
     if (exercise, part) not in now.questions:
@@ -103,12 +104,23 @@ def question(request: Request) -> Response:
     only = request.query_params.get("verdict", "")
     answers = _answers(request, now, exercise, part)
     return class_page_of(
-        request, now, "site/instructor/question", "questions", exercise=exercise, part=part, own=part_statistics, mistakes=mistakes,
-        shown=card, number=now.number(exercise, part), only=only,
-        answers=[item for item in answers if not only or only in item.matches][:_ANSWERS], count=len(answers),
+        request,
+        now,
+        "site/instructor/question",
+        "questions",
+        exercise=exercise,
+        part=part,
+        own=part_statistics,
+        mistakes=mistakes,
+        shown=card,
+        number=now.number(exercise, part),
+        only=only,
+        answers=[item for item in answers if not only or only in item.matches][:_ANSWERS],
+        count=len(answers),
         waiting=sum((item.group.exercise, item.group.part) == (exercise, part) for item in now.open.values()),
-        examples=_EXAMPLES, verdicts=_verdicts(request, part_statistics),
-    )  # fmt: skip
+        examples=_EXAMPLES,
+        verdicts=_verdicts(request, part_statistics),
+    )
 
 
 def _answers(request: Request, now: ClassState, exercise: str, part: str) -> list[DistinctAnswer]:
@@ -128,9 +140,13 @@ def _answers(request: Request, now: ClassState, exercise: str, part: str) -> lis
 def _written(request: Request, marks: list[tuple[str, Mark]]) -> DistinctAnswer:
     mark = marks[0][1]
     return DistinctAnswer(
-        mark.answer, verdict_word(mark.verdict, request.lang), sign_of(mark), mark.says,
-        tuple(dict.fromkeys(student for student, _ in marks)), (mark.verdict.partition(":")[0], mark.verdict),
-    )  # fmt: skip
+        mark.answer,
+        verdict_word(mark.verdict, request.lang),
+        sign_of(mark),
+        mark.says,
+        tuple(dict.fromkeys(student for student, _ in marks)),
+        (mark.verdict.partition(":")[0], mark.verdict),
+    )
 
 
 def _verdicts(request: Request, part_statistics: PartStatistics | None) -> list[tuple[str, str, int]]:

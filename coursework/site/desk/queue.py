@@ -144,12 +144,22 @@ def card_of(request: Request, now: ClassState, item: QueueItem) -> QueueCard:
     question = question_card(now.course, now.issued, first.sheet, group.part, request.lang)
     margin = "" if first.margin is None else localise(significant(first.margin, 2), request.lang)
     return QueueCard(
-        item, question, first, waits,
-        tuple((now.shown(entry.student), decided_words(request, done, done.made)) for entry, done in decisions if done is not None and done.made), now.number(group.exercise, group.part), margin,
-        raw_texts([entry.mark for entry in group.members]), steps(first.mark.out_of),
+        item,
+        question,
+        first,
+        waits,
+        tuple(
+            (now.shown(entry.student), decided_words(request, done, done.made))
+            for entry, done in decisions
+            if done is not None and done.made
+        ),
+        now.number(group.exercise, group.part),
+        margin,
+        raw_texts([entry.mark for entry in group.members]),
+        steps(first.mark.out_of),
         sum(len(entry.members) for entry in _alike(now, group)),
         _drawing(request, now.about.id, first.sheet, question),
-    )  # fmt: skip
+    )
 
 
 def _drawing(request: Request, assignment_id: int, graded: Graded, card: QuestionCard) -> Figure | None:
@@ -218,7 +228,8 @@ def watch(request: Request) -> Response:
 
 
 def _after(before: Sequence[str], name: str, now: ClassState, filters: Filters) -> str:
-    """Return the card after another in the previous order; the same card if some of its answers still wait."""
+    """Return the card after another in the previous order; the same card if some of its answers still
+    wait."""
     left = {candidate.id for candidate in items(now, filters)}
     if name in before:
         index = before.index(name)

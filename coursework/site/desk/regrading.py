@@ -39,7 +39,8 @@ class ChangeRow(NamedTuple):
 
 
 def regrade(request: Request) -> Response:
-    """Return the marks that would change; after confirmation, mark again and return the marks that changed."""
+    """Return the marks that would change; after confirmation, mark again and return the marks that
+    changed."""
     now = class_here(request)
     course = _current_course(request.site, now)
     done = request.is_post and request.form.text("do") == "regrade"
@@ -53,10 +54,17 @@ def regrade(request: Request) -> Response:
     else:
         result = would_change(course, request.site.store, now.about.id)
     return class_page_of(
-        request, now, "site/instructor/regrade", "regrade", told=result, done=done, is_new=course is not request.site.course,
-        rows=[_row(request, now, change) for change in result.changes[:_MOST_ROWS]], questions=_questions(request, now, result),
+        request,
+        now,
+        "site/instructor/regrade",
+        "regrade",
+        told=result,
+        done=done,
+        is_new=course is not request.site.course,
+        rows=[_row(request, now, change) for change in result.changes[:_MOST_ROWS]],
+        questions=_questions(request, now, result),
         students=len({change.student for change in result.changes}),
-    )  # fmt: skip
+    )
 
 
 def _current_course(site: Site, now: ClassState) -> Course[Any]:

@@ -71,8 +71,8 @@ def _decided(request: Request, now: ClassState, row: UnplacedRow) -> str:
 
 
 def _placed_all(request: Request, now: ClassState, first: UnplacedRow) -> str:
-    """Place all waiting rows that name the same stranger as this one; return the message. A row without a question of the
-    assignment, or to whose question an answer is marked, waits on."""
+    """Place all waiting rows that name the same stranger as this one; return the message. A row without a
+    question of the assignment, or to whose question an answer is marked, waits on."""
     texts, left = request.words["files"], 0
     answers: list[tuple[UnplacedRow, AnswerRow]] = []
     if not now.issued.student(request.form.text("student")):

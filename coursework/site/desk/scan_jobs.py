@@ -39,8 +39,8 @@ def begin(site: Site, number: int, sent: Mapping[str, bytes], by: str) -> None:
 
 
 def job(site: Site, number: int) -> Job | None:
-    """Return the state of the job that reads the last upload, whose result is the number of new pages; None if
-    nothing was ever uploaded."""
+    """Return the state of the job that reads the last upload, whose result is the number of new pages; None
+    if nothing was ever uploaded."""
     return jobs.stored_job(site, _key(number))
 
 

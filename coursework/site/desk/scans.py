@@ -57,9 +57,16 @@ def scans_page(request: Request, message: str = "") -> Response:
         message = request.words["scans"]["handed_over"].format(hand_over(request.site, now.about.id, scans))
     absent = _absent(now, scans)
     return class_page_of(
-        request, now, "site/instructor/scans", "scans", told=message, job=job, scans=scans, endings=",".join((*ENDINGS, ".zip")),
+        request,
+        now,
+        "site/instructor/scans",
+        "scans",
+        told=message,
+        job=job,
+        scans=scans,
+        endings=",".join((*ENDINGS, ".zip")),
         absent=absent if scans.pages else [],
-    )  # fmt: skip
+    )
 
 
 def _sent(request: Request, now: ClassState) -> str:
@@ -89,14 +96,16 @@ def _absent(now: ClassState, scans: ClassScans) -> list[str]:
 
 
 def _shown(now: ClassState, students: Iterable[str]) -> list[str]:
-    """Return students as pages on scans show them: by their codes, in the order of these, in an anonymous assignment."""
+    """Return students as pages on scans show them: by their codes, in the order of these, in an anonymous
+    assignment."""
     if not now.all_codes:
         return [*students]
     return sorted(now.all_codes.get(student, student) for student in students)
 
 
 def cards_page(request: Request) -> Response:
-    """Return one card after another, with those of its question; a form decides on one, or on all whose box is filled in."""
+    """Return one card after another, with those of its question; a form decides on one, or on all whose box
+    is filled in."""
     now = class_here(request)
     scans = class_scans(request.site, now.about.id)
     if not request.is_post:
@@ -156,7 +165,8 @@ def _answer(request: Request, card: AnswerCard) -> str:
 def _type(
     request: Request, now: ClassState, scans: ClassScans, answers: Sequence[tuple[AnswerCard, str]]
 ) -> None:
-    """Store the texts that are typed on cards, each as a decision of its own. Raises BadInput: there is no such page."""
+    """Store the texts that are typed on cards, each as a decision of its own. Raises BadInput: there is no
+    such page."""
     for card, answer in answers:
         code, _, number = answer.partition(" ")
         is_page = code in scans.papers.papers and number in _numbers(scans, code)

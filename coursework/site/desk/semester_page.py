@@ -1,4 +1,5 @@
-"""Marks of a semester on one page: all assignments that the user marks, their weights, and the weighted averages."""
+"""Marks of a semester on one page: all assignments that the user marks, their weights, and the weighted
+averages."""
 
 from __future__ import annotations
 
@@ -72,11 +73,22 @@ def semester_page(request: Request) -> Response:
     for row, line in zip(lines, table.lines, strict=True):
         row["status"] = _status(request, titles, semester.unsettled(line, table.read))
     return request.render(
-        "site/instructor/semester", table=table, page=page, rows=page.rows, titles=titles, worths=semester.WORTH,
-        columns=semester.columns_of(table.lines, table.read), class_groups=lambda: table.groups, class_group=table.group,
-        mean=localise(f"{sum(found) / len(found):.2f}", request.lang) if found else "", of=semester.OF, query=_query(request),
-        number=lambda cell: localise(f"{cell:.10g}", request.lang) if isinstance(cell, (int, float)) else cell,
-    )  # fmt: skip
+        "site/instructor/semester",
+        table=table,
+        page=page,
+        rows=page.rows,
+        titles=titles,
+        worths=semester.WORTH,
+        columns=semester.columns_of(table.lines, table.read),
+        class_groups=lambda: table.groups,
+        class_group=table.group,
+        mean=localise(f"{sum(found) / len(found):.2f}", request.lang) if found else "",
+        of=semester.OF,
+        query=_query(request),
+        number=lambda cell: (
+            localise(f"{cell:.10g}", request.lang) if isinstance(cell, (int, float)) else cell
+        ),
+    )
 
 
 def _status(request: Request, titles: Mapping[str, str], unsettled: Mapping[str, Sequence[str]]) -> str:
@@ -132,7 +144,8 @@ def _table(request: Request) -> SemesterTable:
 
 
 def _weight(request: Request, about: AssignmentOverview) -> float:
-    """Return the weight of an assignment: as stated, 0 for none; before anything is stated, 1 for what was answered."""
+    """Return the weight of an assignment: as stated, 0 for none; before anything is stated, 1 for what was
+    answered."""
     params = request.query_params
     if not any(name.startswith(_WEIGHT) for name in params):
         return 1.0 if about.last is not None else 0.0

@@ -107,13 +107,21 @@ def student_page(request: Request) -> Response:
     sheets = [_sheet(request, now, sheet, by_place, drawn) for sheet in now.machine if sheet[0] == student]
     sheets.sort(key=lambda entry: (-entry.graded.sitting, now.issued.exercises.index(entry.graded.exercise)))
     return class_page_of(
-        request, now, "site/instructor/student", "class", student=now.shown(student), result=result, told=message,
-        mark=localise(mark_of(now.adjusted, result.counts, result.out_of), request.lang), columns=[] if now.codes else _columns(now, student),
-        tries=[(moment(entry.received_at, request.lang), entry) for entry in tries], known=0 if now.codes else person or 0,
+        request,
+        now,
+        "site/instructor/student",
+        "class",
+        student=now.shown(student),
+        result=result,
+        told=message,
+        mark=localise(mark_of(now.adjusted, result.counts, result.out_of), request.lang),
+        columns=[] if now.codes else _columns(now, student),
+        tries=[(moment(entry.received_at, request.lang), entry) for entry in tries],
+        known=0 if now.codes else person or 0,
         sittings=[(n, list(group)) for n, group in groupby(sheets, key=lambda entry: entry.graded.sitting)],
         practised=[_practised(request, name, *alone[name]) for name in now.issued.exercises if name in alone],
         rejected=[entry for entry in now.coded.rejected if entry.student == now.shown(student)],
-    )  # fmt: skip
+    )
 
 
 def _student(request: Request, now: ClassState) -> str:
@@ -164,10 +172,15 @@ def _line(
     mark, place = graded.lines[part], now.number(machine.exercise, part).partition(".")[0]
     number = f"{place}.{list(machine.lines).index(part) + 1}"
     return AnswerLine(
-        question_card(now.course, now.issued, machine, part, request.lang), number,
-        machine.lines[part], mark, sign_of(mark), lines,
-        now.decisions.standing(machine, machine.lines[part]) is not None, steps(machine.lines[part].out_of),
-    )  # fmt: skip
+        question_card(now.course, now.issued, machine, part, request.lang),
+        number,
+        machine.lines[part],
+        mark,
+        sign_of(mark),
+        lines,
+        now.decisions.standing(machine, machine.lines[part]) is not None,
+        steps(machine.lines[part].out_of),
+    )
 
 
 def _history_line(request: Request, event: HistoryEvent) -> str:
@@ -208,7 +221,16 @@ def _decided(request: Request, now: ClassState, student: str) -> str:
     decision = Decision(student, exercise, seed, part, kind, points, comment, answer, request.actor.name)
     with request.site.store.begin() as connection:
         decide(connection, now.about.id, [decision])
-        request.note(connection, "decision", assignment=now.about.id, exercise=exercise, part=part, kind=kind, points=points, count=1)  # fmt: skip
+        request.note(
+            connection,
+            "decision",
+            assignment=now.about.id,
+            exercise=exercise,
+            part=part,
+            kind=kind,
+            points=points,
+            count=1,
+        )
     return str(texts["decided"][kind]).format(1, localise(f"{points or 0:g}", request.lang))
 
 

@@ -1,4 +1,5 @@
-"""Reading of uploaded files, in a process of limited means; it imports little, since it starts for each upload."""
+"""Reading of uploaded files, in a process of limited means; it imports little, since it starts for each
+upload."""
 
 from __future__ import annotations
 

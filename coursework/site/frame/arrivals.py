@@ -14,7 +14,8 @@ from datetime import datetime, timedelta
 from typing import Any
 
 GRACE = timedelta(seconds=5)  #: within which the body may follow its first bytes
-RECEIVED = "coursework.received"  #: key of a request's state under which the server puts the time of the connection's last bytes
+#: Key of a request's state under which the server puts the time of the connection's last bytes.
+RECEIVED = "coursework.received"
 _AHEAD = 64 * 1024  #: bytes of a body that are read in advance
 
 Message = MutableMapping[str, Any]

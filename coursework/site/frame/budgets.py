@@ -36,9 +36,15 @@ BOXES = Budget("boxes", 256 * KILOBYTE, 1000, 2)
 HAND_IN = Budget("hand_in", 256 * KILOBYTE, 1000, 1)
 #: A file of answers. A notebook contains its figures.
 ANSWER_FILE = Budget(
-    "answer_file", 2 * MEGABYTE + 4 * KILOBYTE, 20, 1, 1, MappingProxyType({".csv": 256 * KILOBYTE, ".json": 256 * KILOBYTE}),
-    ResourceLimits(4.0, 192 * MEGABYTE), 2,
-)  # fmt: skip
+    "answer_file",
+    2 * MEGABYTE + 4 * KILOBYTE,
+    20,
+    1,
+    1,
+    MappingProxyType({".csv": 256 * KILOBYTE, ".json": 256 * KILOBYTE}),
+    ResourceLimits(4.0, 192 * MEGABYTE),
+    2,
+)
 #: A file of practice progress.
 PROGRESS_FILE = Budget(
     "progress_file",
@@ -61,8 +67,13 @@ DESK_FILE = DESK_FILES._replace(
 
 #: The text of a mechanism's file, compiled at each change.
 MECHANISMS = Budget(
-    "mechanisms", 256 * KILOBYTE, 300, 2, reading=ResourceLimits(6.0, 384 * MEGABYTE, 0, is_warm=True), readings=2
-)  # fmt: skip
+    "mechanisms",
+    256 * KILOBYTE,
+    300,
+    2,
+    reading=ResourceLimits(6.0, 384 * MEGABYTE, 0, is_warm=True),
+    readings=2,
+)
 
 MOST_ROWS = 800  #: of a student's file of answers
 

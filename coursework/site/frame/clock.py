@@ -128,14 +128,16 @@ class SteadyClock:
         return self._leapt is None and self._elapsed() >= self._steady_from
 
     def _note(self, now: datetime, elapsed: float, leap: Leap | None, before: Thread | None) -> None:
-        """Record the time of the site and a new leap, after the record before; an unavailable database is no fault here."""
+        """Record the time of the site and a new leap, after the record before; an unavailable database is no
+        fault here."""
         if before is not None:  # of two leaps, the later one is to stand in the database
             before.join()
         if leap is not None:
             LOG.error(
                 "the clock of this machine leapt by %.0f s; %s",
-                leap.seconds, "the site does not follow it" if leap.held else "the site follows it",
-            )  # fmt: skip
+                leap.seconds,
+                "the site does not follow it" if leap.held else "the site follows it",
+            )
         try:
             with self._store.begin() as connection:
                 if leap is None or not leap.held:

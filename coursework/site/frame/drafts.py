@@ -28,8 +28,8 @@ def save_drafts(
     """Store the boxes that a page sends; return the boxes that another page has changed, and the reading of
     each text.
 
-    A closed sheet accepts nothing new. Texts that were stored before it closed are acknowledged however often they
-    are sent.
+    A closed sheet accepts nothing new. Texts that were stored before it closed are acknowledged however often
+    they are sent.
 
     Raises
     ------
@@ -64,8 +64,8 @@ def save_form_drafts(
     displayed: Callable[[Mapping[str, DraftBox]], Mapping[str, str]],
     versions: Mapping[str, int],
 ) -> tuple[dict[str, DraftBox], dict[str, DraftBox]]:
-    """Store the drafts of a form without a script: ``texts`` by box, if they differ from those that the stored
-    drafts ``displayed`` or a draft exists.
+    """Store the drafts of a form without a script: ``texts`` by box, if they differ from those that the
+    stored drafts ``displayed`` or a draft exists.
 
     Return the stored boxes, and those that another page has changed since, which are not overwritten.
     """
@@ -126,8 +126,8 @@ def draft_attributes(
     """Return the attributes of a form whose boxes are stored as drafts; ``boxes`` are those that the page
     shows.
 
-    ``prefix`` is the prefix of the names of the boxes on the page; ``texts`` adds to the texts of ``[keeping]`` or
-    replaces them.
+    ``prefix`` is the prefix of the names of the boxes on the page; ``texts`` adds to the texts of
+    ``[keeping]`` or replaces them.
     """
     return {
         "data-keep": address,

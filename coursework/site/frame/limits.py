@@ -58,8 +58,8 @@ class Limits:
         self._processor = Allowances(AT_ONCE, BACK)
 
     def wait_for_rate(self, kind: str, person: Hashable, address: str, browser: str = "") -> int:
-        """Count a request of a kind of page by a person, on the site or on a platform, or, for person 0, by known
-        browser or address; return the seconds to wait."""
+        """Count a request of a kind of page by a person, on the site or on a platform, or, for person 0, by
+        known browser or address; return the seconds to wait."""
         if kind == FREE:
             return 0
         if known := person or browser:

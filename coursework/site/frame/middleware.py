@@ -1,4 +1,5 @@
-"""Middleware of all requests: the current user, the permissions, the form, and the cookies of the response."""
+"""Middleware of all requests: the current user, the permissions, the form, and the cookies of the
+response."""
 
 from __future__ import annotations
 
@@ -56,8 +57,8 @@ class Middleware:
         self.site, self._attempts = site, Attempts()
 
     async def answer(self, http: StarletteRequest, asked: Route | Exception) -> Response:
-        """Return the response of a route, or to an address or a method that no route has; log the request: the page
-        and the number of the person, never the content."""
+        """Return the response of a route, or to an address or a method that no route has; log the request:
+        the page and the number of the person, never the content."""
         request = Request(self.site, http.scope, http.receive)
         begun, why = time.perf_counter(), ""
         try:
@@ -80,7 +81,8 @@ class Middleware:
         return response
 
     async def _response(self, request: Request, asked: Route | Exception) -> Response:
-        """Return the response of a page. Its body is read before it takes a thread, and nothing waits in one."""
+        """Return the response of a page. Its body is read before it takes a thread, and nothing waits in
+        one."""
         if isinstance(asked, Exception):
             await run_in_threadpool(self._find_user, request)
             raise asked
@@ -207,7 +209,8 @@ class Middleware:
     # --------------------------------------------------------------- responses
 
     def _sent(self, request: Request, response: Response) -> Response:
-        """Return the response with the cookie of a new session; for a script with its redirect in a header."""
+        """Return the response with the cookie of a new session; for a script with its redirect in a
+        header."""
         if response.status_code == 303 and request.headers.get("hx-request") == "true":
             address = response.headers["location"]
             response.status_code = 200
@@ -267,7 +270,8 @@ def _refusal_of(fault: Exception) -> HTTPException:
 
 
 def _mistaken(fault: BadInput) -> HTTPException:
-    """Return the refusal for a fault in the input, with its message; for an unavailable database, status 503."""
+    """Return the refusal for a fault in the input, with its message; for an unavailable database, status
+    503."""
     if isinstance(fault.__cause__, (DBAPIError, NoConnection)):
         damaged = type(fault.__cause__) is DatabaseError
         LOG.error("the database: %s", "its file is damaged" if damaged else type(fault.__cause__).__name__)

@@ -75,7 +75,8 @@ class SitePages:
         return render(environment_of(self._folder.template_folders, lang), f"{template}.html.j2", names)
 
     def static(self, name: str) -> tuple[str, bytes] | None:
-        """Return the content type and the bytes of a shared static file, without its comments; None if there is no such file."""
+        """Return the content type and the bytes of a shared static file, without its comments; None if there
+        is no such file."""
         kind = KINDS.get(Path(name).suffix, "")
         if name in _JOINED:
             pieces = filter(None, map(self.static, _JOINED[name]))

@@ -36,8 +36,8 @@ class ListPage(NamedTuple, Generic[Row]):
 def page_of(
     request: Request, rows: Sequence[Row], name_of: Callable[[Row], str] | None = None
 ) -> ListPage[Row]:
-    """Return the page of a list that the query states; of the rows alone whose name has what is sought, if their
-    names are given."""
+    """Return the page of a list that the query states; of the rows alone whose name has what is sought, if
+    their names are given."""
     query = dict(request.query_params)
     sought = query.get("find", "").strip()
     if name_of is not None and sought:

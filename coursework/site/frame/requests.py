@@ -1,4 +1,5 @@
-"""Request of a page: that of starlette with the current user and the content of a form, and the table of routes."""
+"""Request of a page: that of starlette with the current user and the content of a form, and the table of
+routes."""
 
 from __future__ import annotations
 
@@ -58,7 +59,8 @@ class Person(NamedTuple):
         return self.role in STAFF
 
     def may(self, permission: str, assignment: int | None = None, group: str | None = None) -> bool:
-        """Return True if the person has a permission; in a given assignment, for a student of a given group."""
+        """Return True if the person has a permission; in a given assignment, for a student of a given
+        group."""
         return may(self, Permission(permission), assignment, group)
 
 
@@ -142,8 +144,8 @@ class Request(StarletteRequest):
 
     @property
     def client_address(self) -> str:
-        """Address of the client as the server states it: headers of the request count only behind a configured
-        proxy."""
+        """Address of the client as the server states it: headers of the request count only behind a
+        configured proxy."""
         return self.client.host if self.client else ""
 
     def cookie(self, name: str) -> str:
@@ -230,7 +232,8 @@ class Route(NamedTuple):
 
 
 def preferred_language(wanted: str, languages: Sequence[str]) -> str:
-    """Return the first of the wanted languages that there is, from ``fr-CA, en;q=0.8`` or ``fr_FR``; else the first."""
+    """Return the first of the wanted languages that there is, from ``fr-CA, en;q=0.8`` or ``fr_FR``; else the
+    first."""
     codes = re.findall(r"(?:^|[,\s])([a-zA-Z]{2,3})(?=[-_,;.\s]|$)", wanted[:500])
     return next((code.lower() for code in codes if code.lower() in languages), languages[0])
 

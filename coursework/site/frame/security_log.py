@@ -33,7 +33,8 @@ def event_of(sentence: str, status: int) -> str:
 
 
 def log_event(event: str, method: str, path: str, by: str, address: str) -> None:
-    """Write an event, with the path of the route, who sent the request if anybody is known, and the network."""
+    """Write an event, with the path of the route, who sent the request if anybody is known, and the
+    network."""
     level = logging.INFO if event in (SIGNED_IN, SIGNED_OUT) else logging.WARNING
     LOG.log(level, "security: %s, %s %s, %s, from %s", event, method, path, by or "nobody", network(address))
 

@@ -79,7 +79,8 @@ class Site:
         return PracticePool(self.course, self.store)
 
     def ahead(self, key: Hashable, work: Callable[[], Any]) -> Future[Any]:
-        """Run work in the background that a request will soon need, once for each key; return its result to come."""
+        """Run work in the background that a request will soon need, once for each key; return its result to
+        come."""
         with self._lock:
             submitted: Future[Any] = self.cache.get(("ahead", key), lambda: self._aside.submit(work))
         return submitted

@@ -1,5 +1,5 @@
-"""Turns of requests: the limits on their rate and processor time, their slots, and their line in the log; the same for pages
-of the site and for pages in frames of platforms."""
+"""Turns of requests: the limits on their rate and processor time, their slots, and their line in the log; the
+same for pages of the site and for pages in frames of platforms."""
 
 from __future__ import annotations
 

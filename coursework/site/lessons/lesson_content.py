@@ -1,5 +1,5 @@
-"""Lessons of the site: rendered once for each language, in a process of their own, since their cells run code; and which
-section helps with what."""
+"""Lessons of the site: rendered once for each language, in a process of their own, since their cells run
+code; and which section helps with what."""
 
 from __future__ import annotations
 
@@ -83,7 +83,8 @@ def _address(link: TextLink) -> str:
 
 
 def lesson_address(name: str, anchor: str = "") -> str:
-    """Return the address of a lesson, or of a section or figure in it, which without a script only the whole lesson has."""
+    """Return the address of a lesson, or of a section or figure in it, which without a script only the whole
+    lesson has."""
     return f"/lessons/{name}?{WHOLE}#{anchor}" if anchor else f"/lessons/{name}"
 
 
@@ -104,7 +105,8 @@ def lessons_for(site: Site, exercise: str, lang: str) -> tuple[Lesson, ...]:
 
 
 def section_links(lesson: Lesson) -> tuple[LessonLink, ...]:
-    """Return the links to the sections of a lesson that teach an exercise; to the lesson where the whole of it does."""
+    """Return the links to the sections of a lesson that teach an exercise; to the lesson where the whole of
+    it does."""
     sections = tuple(
         LessonLink(lesson_address(lesson.name, f"section-{number}"), title, number)
         for number, title in lesson.places

@@ -52,7 +52,8 @@ class CheckedBlank(NamedTuple):
 
 
 class CheckedExample(NamedTuple):
-    """Blanks of an example as they were checked last: the texts by field, and the marks of those that are not blank."""
+    """Blanks of an example as they were checked last: the texts by field, and the marks of those that are not
+    blank."""
 
     texts: Mapping[str, str]
     marks: tuple[CheckedBlank, ...]
@@ -63,8 +64,8 @@ class CheckedExample(NamedTuple):
 
 
 def lesson(request: Request) -> Response:
-    """Return the page of a lesson, whose steps are files that browsers keep unless all are asked for; a form checks the blanks of
-    one of its examples, or keeps the place of its reader."""
+    """Return the page of a lesson, whose steps are files that browsers keep unless all are asked for; a form
+    checks the blanks of one of its examples, or keeps the place of its reader."""
     name = _name(request)
     if request.is_post and "place" in request.form.texts:
         return keep_place(request, name)
@@ -132,8 +133,8 @@ def _after(request: Request, name: str) -> tuple[str, str] | None:
 
 
 def _parts(request: Request, name: str, lang: str) -> list[str]:
-    """Return the steps of a lesson for readers of a language, in parts. They are the same for everybody: the page has the CSRF
-    token."""
+    """Return the steps of a lesson for readers of a language, in parts. They are the same for everybody: the
+    page has the CSRF token."""
     opened = lesson_of(request.site, name, lesson_lang(request.site, name, lang))
     begins, size = [0], 0
     for number, step in enumerate(opened.steps):
@@ -216,8 +217,8 @@ def _checked(request: Request, lang: str, blanks: BlanksPiece, texts: Mapping[st
 def _checked_before(
     request: Request, name: str, lang: str, opened: SteppedLesson
 ) -> dict[int, CheckedExample]:
-    """Return the examples of a lesson that the person checked before, by the number of their step, and the one that a form led
-    from, even if nothing is in its blanks."""
+    """Return the examples of a lesson that the person checked before, by the number of their step, and the
+    one that a form led from, even if nothing is in its blanks."""
     found, asked = {}, request.query_params.get("example", "")
     kept = kept_blanks(request, name)
     for number, step in enumerate(opened.steps, 1):

@@ -1,4 +1,5 @@
-"""Places at which a person stopped in lessons, and what they filled in there, so that another device goes on there."""
+"""Places at which a person stopped in lessons, and what they filled in there, so that another device goes on
+there."""
 
 from __future__ import annotations
 
@@ -16,13 +17,15 @@ _PLACE = re.compile(r"[1-9]\d{0,3}/[1-9]\d{0,3}/\d{1,15}")  #: step, of how many
 
 
 def places(request: Request) -> dict[str, str]:
-    """Return the places of the person by lesson, as the page's script writes them: step, number of steps, and time."""
+    """Return the places of the person by lesson, as the page's script writes them: step, number of steps, and
+    time."""
     with request.site.store.reading() as connection:
         return {name: box.text for name, box in drafts(connection, request.user.id, _SHEET).items()}
 
 
 def keep_place(request: Request, lesson: str) -> Response:
-    """Store the place that a page sends, unless a later one is stored. Raises HTTPException: it is no place."""
+    """Store the place that a page sends, unless a later one is stored. Raises HTTPException: it is no
+    place."""
     text = request.form.text("place")
     if not _PLACE.fullmatch(text):
         raise HTTPException("bad_request", 400)
@@ -39,7 +42,8 @@ def _time(place: str) -> int:
 
 
 def boxes_of(blanks: BlanksPiece) -> dict[str, str]:
-    """Return the names of the boxes of an example by the names of its answers; other numbers make another example."""
+    """Return the names of the boxes of an example by the names of its answers; other numbers make another
+    example."""
     example = f"{blanks.exercise}/{blanks.seed}/{blanks.level}"
     return {key: f"{example}/{key}" for _, key, _ in blanks.questions}
 

@@ -159,7 +159,8 @@ def _spoken(site: Site, definition: Assignment, lang: str) -> str:
 
 
 def _student(person: Any, launch: Launch, lang: str, names: set[str]) -> Student:
-    """Return the student of a launch as a roster would list them; two students of one name are distinguished."""
+    """Return the student of a launch as a roster would list them; two students of one name are
+    distinguished."""
     plain = launch.name or person.name or launch.person
     apart = launch.number or launch.email or launch.person
     called = (plain, f"{plain} ({apart})", f"{plain} ({person.who})")

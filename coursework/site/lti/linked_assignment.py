@@ -1,4 +1,5 @@
-"""Assignment that a link opens: a published one of the site, or one that is made for a link of an exercise."""
+"""Assignment that a link opens: a published one of the site, or one that is made for a link of an
+exercise."""
 
 from __future__ import annotations
 

@@ -21,7 +21,8 @@ def waiting(request: Request) -> Response:
         {
             "link": entry.launch.link_title or entry.launch.link,
             "name": entry.name,
-            "points": f"{points_number(entry.score.given, request.lang)} / {points_number(entry.score.maximum, request.lang)}",
+            "points": f"{points_number(entry.score.given, request.lang)} / "
+            f"{points_number(entry.score.maximum, request.lang)}",
             "failures": entry.failures,
             "why": entry.problem,
         }

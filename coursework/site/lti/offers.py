@@ -1,4 +1,5 @@
-"""Offers for the links of a platform: the published assignments of the site, and the exercises of its course."""
+"""Offers for the links of a platform: the published assignments of the site, and the exercises of its
+course."""
 
 from __future__ import annotations
 

@@ -60,6 +60,11 @@ class LTIPages(SitePages):
         files = [{"filled": form.filled, "draws": draws}] * len(papers.sheets_of(paper))
         names = papers.context(paper, "html.j2", partial(render, env), files)
         more = {
-            "image": papers.image, "form": form, "filled": form.filled, "keeping": "", "draws": draws, "file": self.file,
-        }  # fmt: skip
+            "image": papers.image,
+            "form": form,
+            "filled": form.filled,
+            "keeping": "",
+            "draws": draws,
+            "file": self.file,
+        }
         return self.page(template, paper.heading.lang, {**names, **more})

@@ -77,9 +77,12 @@ def settings_of(folder: Path, url: str) -> Settings:
 
 
 def mounted(
-    site: Site, folder: Path, client: httpx.Client | None = None, settings: Settings | None = None,
+    site: Site,
+    folder: Path,
+    client: httpx.Client | None = None,
+    settings: Settings | None = None,
     clock: Callable[[], float] = time.time,
-) -> Starlette:  # fmt: skip
+) -> Starlette:
     """Return the service of a site as an ASGI application, with its own cookies, headers and refusals.
 
     Parameters
@@ -152,8 +155,9 @@ class _Service:
         methods: Sequence[str],
         limit: str = "usual",
     ) -> Route:
-        """Return the route of an endpoint under the site's limits, with a kind of page (:mod:`coursework.site.frame.limits`)
-        for requests without a session; a refusal or an unexpected fault becomes a page, never a traceback."""
+        """Return the route of an endpoint under the site's limits, with a kind of page
+        (:mod:`coursework.site.frame.limits`) for requests without a session; a refusal or an unexpected fault
+        becomes a page, never a traceback."""
 
         async def answer(request: Request) -> Response:
             begun, refusal, fault_at = time.perf_counter(), None, ""
@@ -172,8 +176,9 @@ class _Service:
     async def _response(
         self, request: Request, work: Callable[[Request, FormData], Response], limit: str
     ) -> Response:
-        """Run an endpoint in the threads of the site, when its limits allow the person of the session, or the address of
-        somebody unknown, another request. A student's form is a submission, which precedes pages."""
+        """Run an endpoint in the threads of the site, when its limits allow the person of the session, or the
+        address of somebody unknown, another request. A student's form is a submission, which precedes
+        pages."""
         lanes, is_post = self.site.lanes, request.method == "POST"
         launch = await (lanes.short if is_post else lanes.usual)(self._launch_of, request)
         is_short = is_post and launch is not None and launch.role is Role.STUDENT
@@ -446,7 +451,8 @@ class _Service:
 
 
 def _visitor(launch: Launch | None) -> Visitor:
-    """Return the sender of a request as the limits know them: the person on the platform, whichever link they opened."""
+    """Return the sender of a request as the limits know them: the person on the platform, whichever link they
+    opened."""
     if launch is None:
         return Visitor()
     return Visitor(

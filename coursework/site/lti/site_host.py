@@ -55,7 +55,9 @@ from coursework.site.publication.publishing import definition_of, preview_paper
 
 FROM_A_PLATFORM = "site: from a platform"
 _BEST = "best"
-_FEW = 4  #: waiting submissions up to which that of an exercise is marked when its page is opened, before the worker does
+#: Waiting submissions up to which that of an exercise is marked when its page is opened, before the worker
+#: does.
+_FEW = 4
 
 
 class SiteHost:
@@ -102,9 +104,13 @@ class SiteHost:
         texts = words(request.lang, "site")
         sentence = texts["lti"]["refused"].get(why.sentence) or texts["refused"][why.sentence]
         names = {
-            "title": texts["refused"]["title"], "message": str(sentence).format(*why.parts), "again": "", "action": "",
-            "targets": "", "back": "",
-        }  # fmt: skip
+            "title": texts["refused"]["title"],
+            "message": str(sentence).format(*why.parts),
+            "again": "",
+            "action": "",
+            "targets": "",
+            "back": "",
+        }
         if why.sentence == "connect":
             names |= {"connect": str(why.parts[0]), "connect_word": texts["connect"]["title"]}
         return HTMLResponse(self.pages.page("platform/lti_message", request.lang, names), why.status_code)
@@ -182,14 +188,27 @@ class SiteHost:
             self._wake()
 
     def _sheet(
-        self, request: LTIRequest, state: AssignmentState, paper: StudentPaper, texts: Mapping[str, str], *, notes: Sequence[str] = (),
+        self,
+        request: LTIRequest,
+        state: AssignmentState,
+        paper: StudentPaper,
+        texts: Mapping[str, str],
+        *,
+        notes: Sequence[str] = (),
         unread: Sequence[str] = (),
-    ) -> str:  # fmt: skip
+    ) -> str:
         more = [(request.home, words(request.lang)["lti"]["see_again"])] if state.done else []
         form = SheetForm(
-            request.home, request.csrf_token, len(state.done) + 1, _filled(texts), (*notes, *self._rules(request, state)), tuple(unread),
-            bool(unread), tuple(more), request.launch.return_url,
-        )  # fmt: skip
+            request.home,
+            request.csrf_token,
+            len(state.done) + 1,
+            _filled(texts),
+            (*notes, *self._rules(request, state)),
+            tuple(unread),
+            bool(unread),
+            tuple(more),
+            request.launch.return_url,
+        )
         return self.pages.sheet(paper.paper, form)
 
     def _handed_in(self, state: AssignmentState, paper: StudentPaper) -> dict[str, str]:
@@ -234,8 +253,13 @@ class SiteHost:
         return [" ".join(rules)]
 
     def _after_submission(
-        self, request: LTIRequest, site_request: SiteRequest, linked: LinkedAssignment, state: AssignmentState, paper: StudentPaper,
-    ) -> Response:  # fmt: skip
+        self,
+        request: LTIRequest,
+        site_request: SiteRequest,
+        linked: LinkedAssignment,
+        state: AssignmentState,
+        paper: StudentPaper,
+    ) -> Response:
         """Return the feedback on the last submission if it is released; otherwise a confirmation."""
         texts, last = words(request.lang)["lti"], state.done[-1]
         arrival = texts["try_number"].format(last.number, exact_text(last.received_at, request.lang))
@@ -261,9 +285,12 @@ class SiteHost:
             self._sent(request, state),
         ]
         names = {
-            "title": state.title, "notes": [note for note in notes if note], "more": more, "leave": request.launch.return_url,
+            "title": state.title,
+            "notes": [note for note in notes if note],
+            "more": more,
+            "leave": request.launch.return_url,
             "handed_in": site_request.words["lti"]["handed_in"],
-        }  # fmt: skip
+        }
         reloads = {"refresh": str(waits.seconds)} if waits and waits.seconds else None
         html = self.pages.page("platform/lti_handed_in", request.lang, names)
         return HTMLResponse(html, headers=reloads)
@@ -348,11 +375,17 @@ class SiteHost:
                 rows = class_rows(connection, self._site, now, request, here)
         missing = _not_there(members, {folded(row.name) for row in rows}, {row.person for row in rows})
         names = {
-            "title": request.launch.link_title or title, "context": request.launch.context_title, "home": request.home,
+            "title": request.launch.link_title or title,
+            "context": request.launch.context_title,
+            "home": request.home,
             "desk": "" if linked.number is None else f"{self._site.url}/desk/{linked.number}",
-            "rules": rules_rows(request, stated.get("sittings", _BEST), publication), "rows": rows, "missing": missing,
-            "roster_note": note, "has_roster": members is not None, "own": words(lang, "site")["lti"]["class"],
-        }  # fmt: skip
+            "rules": rules_rows(request, stated.get("sittings", _BEST), publication),
+            "rows": rows,
+            "missing": missing,
+            "roster_note": note,
+            "has_roster": members is not None,
+            "own": words(lang, "site")["lti"]["class"],
+        }
         return HTMLResponse(self.pages.page("platform/lti_class", lang, names))
 
     def _preview(self, request: LTIRequest, linked: LinkedAssignment, form: FormData | None) -> Response:
@@ -368,9 +401,14 @@ class SiteHost:
         typed = paper.texts(form)
         if back := self._doubts(request, paper, typed, form):
             again = SheetForm(
-                sheet, request.csrf_token, filled=_filled(typed), notes=(*notes, *back.get("notes", ())),
-                unread=tuple(back.get("unread", ())), may_insist="unread" in back, more=links,
-            )  # fmt: skip
+                sheet,
+                request.csrf_token,
+                filled=_filled(typed),
+                notes=(*notes, *back.get("notes", ())),
+                unread=tuple(back.get("unread", ())),
+                may_insist="unread" in back,
+                more=links,
+            )
             return HTMLResponse(self.pages.sheet(paper.paper, again), 422)
         rows = rows_for(paper, typed, 1, site.clock(), FROM_A_PLATFORM)
         sheets = placed_sheets(site.course, paper.issued, rows)
@@ -429,6 +467,10 @@ def _members(request: LTIRequest, lang: str) -> tuple[Sequence[Member] | None, s
 def _not_there(members: Sequence[Member] | None, names: set[str], persons: set[str]) -> list[str]:
     """Return the students of the platform who have no paper yet."""
     return sorted(
-        (member.name or member.person for member in students(members or ()) if member.person not in persons and folded(member.name) not in names),
+        (
+            member.name or member.person
+            for member in students(members or ())
+            if member.person not in persons and folded(member.name) not in names
+        ),
         key=folded,
-    )  # fmt: skip
+    )

@@ -1,4 +1,5 @@
-"""View of a mechanism's file for its page: figure, motion, report and variants, in a process of limited means."""
+"""View of a mechanism's file for its page: figure, motion, report and variants, in a process of limited
+means."""
 
 from __future__ import annotations
 
@@ -36,7 +37,8 @@ _LONGEST = 400  #: characters of a fault
 
 @dataclass(frozen=True)
 class CheckedBoxes:
-    """Check boxes of the page: lengths that vary, and questions as ``key name``; with the titles beside them."""
+    """Check boxes of the page: lengths that vary, and questions as ``key name``; with the titles beside
+    them."""
 
     varying: tuple[str, ...]
     asked: tuple[str, ...]
@@ -152,7 +154,8 @@ def _found(path: Path, text: str, lang: str) -> dict[str, Any]:
 
 
 def _row(told: Any, value: Any, lang: str) -> tuple[str, str]:
-    """Return what a mechanism is in the reader's language: a quantity by its symbol, a number with the language's decimal mark."""
+    """Return what a mechanism is in the reader's language: a quantity by its symbol, a number with the
+    language's decimal mark."""
     name = told.values.get("name", "")
     types = words(lang, "site")["explore"]["types"]
     said = types.get(str(value)) or (
@@ -186,7 +189,8 @@ def _moving(animation: Animation, label: str) -> dict[str, Any]:
     crank = [drawing.on_paper(p) for p in animation.crank] if animation.crank else []
     width, height = (f"{x:.6g}" for x in drawing.size)
     svg = (
-        f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width} {height}" role="img" aria-label="{escape(label)}"><g fill="none" stroke="#000" '
+        f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width} {height}" role="img" '
+        f'aria-label="{escape(label)}"><g fill="none" stroke="#000" '
         f'stroke-linecap="round" stroke-linejoin="round">{"".join(lines)}</g></svg>'
     )
     pivot, way = (

@@ -51,13 +51,15 @@ def _title(text: str, lang: str) -> str:
 
 
 def is_writable(site: Site) -> bool:
-    """Return True if mechanisms can be saved: into a course of one's own, in a folder that the server may write."""
+    """Return True if mechanisms can be saved: into a course of one's own, in a folder that the server may
+    write."""
     root = site.course.folder.root
     return root != builtin_root().resolve() and os.access(root / "exercises", os.W_OK)
 
 
 def address_of(request: Request, exercise: str) -> str:
-    """Return the address of the page of an exercise's mechanism; empty if no file states one, or for somebody who may not."""
+    """Return the address of the page of an exercise's mechanism; empty if no file states one, or for somebody
+    who may not."""
     if not request.user.may(Permission.ASSIGNMENTS_PUBLISH):
         return ""
     home = request.site.course.folder.home("exercises", exercise)
@@ -140,17 +142,29 @@ def _view(request: Request, text: str, name: str, choices: CheckedBoxes | None =
 
 
 def _page(
-    request: Request, name: str, text: str, home: Path | None, view: MechanismView | None = None, *,
-    problem: str = "", chosen: str = "", status: int = 200,
-) -> Response:  # fmt: skip
+    request: Request,
+    name: str,
+    text: str,
+    home: Path | None,
+    view: MechanismView | None = None,
+    *,
+    problem: str = "",
+    chosen: str = "",
+    status: int = 200,
+) -> Response:
     folder = request.site.course.folder
     about: Mapping[str, Any] = {
-        "mechanism": name, "is_new": home is None, "text": text, "problem": problem, "chosen": chosen,
-        "file_name": folder.relative(home) if home is not None else "", "is_own": is_writable(request.site),
+        "mechanism": name,
+        "is_new": home is None,
+        "text": text,
+        "problem": problem,
+        "chosen": chosen,
+        "file_name": folder.relative(home) if home is not None else "",
+        "is_own": is_writable(request.site),
         "view": view or _view(request, text, "mechanism" if home is None else name),
         "saved": request.query_params.get("saved") == "1" and home is not None,
         "is_piece": False,
-    }  # fmt: skip
+    }
     return request.render("site/instructor/mechanism", status, **about)
 
 

@@ -112,10 +112,19 @@ def _paper_response(
     boxes_shown = {*paper.fields, *paper.drawn}
     texts = {name: box.text for name, box in contents.items() if name in boxes_shown}
     return request.render(
-        "site/student/assignment", status, state=state, form=form, versions=form["data-keep-versions"], problem=problem,
-        draws=bool(paper.drawn), look="", back="", zone=zone_name(request.received_at), paper_head=Markup(pieces.head),
+        "site/student/assignment",
+        status,
+        state=state,
+        form=form,
+        versions=form["data-keep-versions"],
+        problem=problem,
+        draws=bool(paper.drawn),
+        look="",
+        back="",
+        zone=zone_name(request.received_at),
+        paper_head=Markup(pieces.head),
         paper_body=Markup(filled_in(pieces.body, texts)),
-    )  # fmt: skip
+    )
 
 
 def save_draft(request: Request) -> Response:
@@ -201,11 +210,18 @@ def _confirming(
     late = state.assignment.own_publication.late_seconds(state.now)
     charged = state.assignment.own_publication.charged(late)
     return request.render(
-        "site/student/assignment_read_back", state=state, lines=lines, counts=counts(lines), source=source, notes=notes,
-        number=len(state.done) + 1, texts={name: text for name, text in texts.items() if text},
+        "site/student/assignment_read_back",
+        state=state,
+        lines=lines,
+        counts=counts(lines),
+        source=source,
+        notes=notes,
+        number=len(state.done) + 1,
+        texts={name: text for name, text in texts.items() if text},
         late=length_text(timedelta(seconds=late), request.lang) if late else "",
-        charged=charged_text(charged, request.lang) if charged else "", heading=paper.heading,
-    )  # fmt: skip
+        charged=charged_text(charged, request.lang) if charged else "",
+        heading=paper.heading,
+    )
 
 
 # ------------------------------------------------------------------------ files
@@ -316,13 +332,21 @@ def receipt(request: Request) -> Response:
         for name, box in paper.boxes.items()
     }
     return request.render(
-        "site/student/assignment_receipt", state=state, row=row, told=content, lines=read_lines(paper, texts),
-        came=time_element(row.received_at, request.lang, exact=True), again=again if again in ("same", "other") else "",
+        "site/student/assignment_receipt",
+        state=state,
+        row=row,
+        told=content,
+        lines=read_lines(paper, texts),
+        came=time_element(row.received_at, request.lang, exact=True),
+        again=again if again in ("same", "other") else "",
         late=length_text(timedelta(seconds=row.late), request.lang) if row.late else "",
-        charged=charged_text(state.assignment.own_publication.charged(row.late), request.lang) if state.assignment.own_publication.charged(row.late) else "",
-        saved=row.source == submission.AS_SAVED, feedback_from=feedback_from(request, state),
+        charged=charged_text(state.assignment.own_publication.charged(row.late), request.lang)
+        if state.assignment.own_publication.charged(row.late)
+        else "",
+        saved=row.source == submission.AS_SAVED,
+        feedback_from=feedback_from(request, state),
         marking=pending_marking(request, row.id) if state.releases("feedback") else None,
-    )  # fmt: skip
+    )
 
 
 def feedback_from(request: Request, state: AssignmentState) -> str:

@@ -43,17 +43,24 @@ def as_text(request: Request, content: dict[str, Any], row: Any) -> str:
     """Return a receipt as text."""
     texts = words(request.lang, "site")["receipts"]
     lines = [
-        texts["title"], "",
+        texts["title"],
+        "",
         f"{texts['code']}: {content['receipt']}",
         f"{texts['assignment']}: {content['assignment']}",
         f"{texts['student']}: {content['student']}",
         f"{texts['came']}: {exact_text(row.received_at, request.lang)} ({zone_name(row.received_at)})",
         *([f"{texts['late']}: {length_text(timedelta(seconds=row.late), request.lang)}"] if row.late else []),
         f"{texts['answered']}: {content['answered']} / {content['asked']}",
-        f"SHA-256: {content['sha256']}", "",
-        *(f"{exercise} {seed} {part}: {' '.join(answer.split())}" for exercise, seed, part, answer in content["answers"]),
-        "", texts["how"], "",
-    ]  # fmt: skip
+        f"SHA-256: {content['sha256']}",
+        "",
+        *(
+            f"{exercise} {seed} {part}: {' '.join(answer.split())}"
+            for exercise, seed, part, answer in content["answers"]
+        ),
+        "",
+        texts["how"],
+        "",
+    ]
     return "\n".join(lines)
 
 

@@ -1,4 +1,5 @@
-"""Start of a paper with a working time: the page before it, and the record of the start, from which the time counts."""
+"""Start of a paper with a working time: the page before it, and the record of the start, from which the time
+counts."""
 
 from __future__ import annotations
 
@@ -14,8 +15,8 @@ from coursework.site.papers.submission import pass_dates
 
 
 def start_names(request: Request, assignment: StudentAssignment) -> dict[str, Any]:
-    """Return the names of the page that starts a paper: its state, and the time that is left if that is less than
-    the working time."""
+    """Return the names of the page that starts a paper: its state, and the time that is left if that is less
+    than the working time."""
     with request.site.store.reading() as connection:
         state = state_of(request, assignment, connection)
     whole = timedelta(minutes=state.assignment.own_publication.minutes or 0)
@@ -24,7 +25,8 @@ def start_names(request: Request, assignment: StudentAssignment) -> dict[str, An
 
 
 def record_start(request: Request) -> None:
-    """Start the working time of the paper that the address names, once; a repeated request changes nothing."""
+    """Start the working time of the paper that the address names, once; a repeated request changes
+    nothing."""
     number = int(request.path_params["number"])
     pass_dates(request.site, request.received_at, number)
     with request.site.store.begin() as connection:

@@ -216,7 +216,8 @@ class StudentPaper:
         return answers
 
     def drawing_texts(self, form: FormData) -> dict[str, str]:
-        """Return the drawings in a form of the page, by box; a longer text than a drawing may have is cut, and then is none."""
+        """Return the drawings in a form of the page, by box; a longer text than a drawing may have is cut,
+        and then is none."""
         return {name: form.text(name)[: longest(name)] for name in self.drawn if name in form.texts}
 
     def pieces(self) -> PreparedPieces:

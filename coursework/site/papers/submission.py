@@ -200,8 +200,8 @@ def _deliver(
 
 
 def mark(site: Site, delivery_id: int, *, at_once: bool = False) -> None:
-    """Mark a submission, unless a worker does; even then if its marks are wanted ``at_once``. The submission is
-    already stored: after a fault, it is marked later."""
+    """Mark a submission, unless a worker does; even then if its marks are wanted ``at_once``. The submission
+    is already stored: after a fault, it is marked later."""
     if site.has_worker and not at_once:
         return
     try:
@@ -220,11 +220,17 @@ def rows_for(
     origin = RowOrigin(sitting=number, submitted=received_at.isoformat(timespec="seconds"))
     return [
         AnswerRow(
-            paper.student, field.exercise, str(field.seed), field.part, texts.get(name, ""), source,
-            lang=field.lang, origin=origin,
+            paper.student,
+            field.exercise,
+            str(field.seed),
+            field.part,
+            texts.get(name, ""),
+            source,
+            lang=field.lang,
+            origin=origin,
         )
         for name, field in paper.fields.items()
-    ]  # fmt: skip
+    ]
 
 
 # ---------------------------------------------------------------------- content

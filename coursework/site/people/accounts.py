@@ -84,8 +84,8 @@ def sign_in_attempt(request: Request) -> Attempt:
 
 
 def signed_in(request: Request, address: str, person: int, device: str = "") -> Response:
-    """End the browser's session and begin one of a person, or an anonymous one for person 0; return the redirect
-    to an address. ``device`` is the new device cookie."""
+    """End the browser's session and begin one of a person, or an anonymous one for person 0; return the
+    redirect to an address. ``device`` is the new device cookie."""
     before = request.person.id if request.person else 0
     request.events.append((SIGNED_IN if person else SIGNED_OUT, person or before))
     token, seconds, request.is_new = request.site.cookies.anonymous().token, ANONYMOUS_SECONDS, False
@@ -119,13 +119,24 @@ def _sign_in_page(
 
 #: Parts of the header ``User-Agent``, the most specific first, since many browsers also name others.
 _PROGRAMS = (
-    ("Edg", "Edge"), ("OPR/", "Opera"), ("SamsungBrowser", "Samsung Internet"), ("FxiOS", "Firefox"), ("Firefox/", "Firefox"),
-    ("CriOS", "Chrome"), ("Chrome/", "Chrome"), ("Safari/", "Safari"),
-)  # fmt: skip
+    ("Edg", "Edge"),
+    ("OPR/", "Opera"),
+    ("SamsungBrowser", "Samsung Internet"),
+    ("FxiOS", "Firefox"),
+    ("Firefox/", "Firefox"),
+    ("CriOS", "Chrome"),
+    ("Chrome/", "Chrome"),
+    ("Safari/", "Safari"),
+)
 _SYSTEMS = (
-    ("iPhone", "iPhone"), ("iPad", "iPad"), ("Android", "Android"), ("CrOS", "ChromeOS"), ("Windows", "Windows"),
-    ("Mac OS X", "macOS"), ("Linux", "Linux"),
-)  # fmt: skip
+    ("iPhone", "iPhone"),
+    ("iPad", "iPad"),
+    ("Android", "Android"),
+    ("CrOS", "ChromeOS"),
+    ("Windows", "Windows"),
+    ("Mac OS X", "macOS"),
+    ("Linux", "Linux"),
+)
 
 
 def described(user_agent: str) -> str:
@@ -246,9 +257,15 @@ def _account_page(request: Request, mine: Any, status: int = 200, **names: Any) 
         for session in sessions
     ]
     return request.render(
-        "site/account", status, mine=mine, has_password=has_password, sessions=rows, shortest=passwords.SHORTEST,
-        happened=happened, **names,
-    )  # fmt: skip
+        "site/account",
+        status,
+        mine=mine,
+        has_password=has_password,
+        sessions=rows,
+        shortest=passwords.SHORTEST,
+        happened=happened,
+        **names,
+    )
 
 
 def _other_password(request: Request, mine: Any) -> Response:
@@ -278,7 +295,8 @@ def invited_by_command(site: Site, login: str, role: str) -> str:
     login
         Login of an existing account, or of a new person.
     role
-        ``administrator`` or ``instructor``. The first instructor of a site is its administrator, and nobody's role is lowered.
+        ``administrator`` or ``instructor``. The first instructor of a site is its administrator, and nobody's
+        role is lowered.
 
     Returns
     -------
@@ -324,7 +342,8 @@ def check_administrator(site: Site) -> None:
             return
     raise BadInput(
         "other machines can reach this site, and no administrator has an account: "
-        "'coursework serve --administrator LOGIN' with the same --db and --url prints a link by which one chooses a password"
+        "'coursework serve --administrator LOGIN' with the same --db and --url prints a link by which "
+        "one chooses a password"
     )
 
 

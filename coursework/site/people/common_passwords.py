@@ -7,22 +7,40 @@ import re
 
 #: Words that are weak passwords, even with digits and signs around them.
 _WORDS = frozenset(
-    "password passwort passwords motdepasse mdp secret admin administrator administrateur root user login letmein welcome welcometo "
-    "bienvenue bonjour bonsoir hello helloworld iloveyou jetaime ilovemath loulou doudou chouchou soleil sunshine princess princesse "
-    "dragon monkey football basketball baseball superman batman spiderman starwars pokemon minecraft fortnite marseille paris france "
-    "montreal quebec canada belgique suisse london england america google facebook instagram youtube microsoft windows apple samsung "
-    "trustno changeme changemoi default guest test testtest tester testing student students etudiant etudiante professor professeur "
-    "teacher enseignant instructor university universite school college lycee course coursework cours homework devoir exam examen "
-    "mechanism mechanisms mecanisme mecanismes mechanics mecanique kinematics cinematique engineering ingenieur moodle canvas "
-    "master killer shadow michael jennifer jessica charlie jordan nicolas thomas camille marie julien computer ordinateur internet "
-    "winter summer autumn spring hiver ete automne printemps january janvier september septembre october octobre "
-    "azerty azertyuiop qwerty qwertyuiop qwertz qwertzuiop abc abcdef password1 passw0rd pass pass word correcthorsebatterystaple "
-    "whatever nothing freedom liberte chocolat chocolate butterfly papillon flower liverpool arsenal barcelona realmadrid".split()
+    "password passwort passwords motdepasse mdp secret admin administrator administrateur root user "
+    "login letmein welcome welcometo "
+    "bienvenue bonjour bonsoir hello helloworld iloveyou jetaime ilovemath loulou doudou chouchou "
+    "soleil sunshine princess princesse "
+    "dragon monkey football basketball baseball superman batman spiderman starwars pokemon minecraft "
+    "fortnite marseille paris france "
+    "montreal quebec canada belgique suisse london england america google facebook instagram youtube "
+    "microsoft windows apple samsung "
+    "trustno changeme changemoi default guest test testtest tester testing student students etudiant "
+    "etudiante professor professeur "
+    "teacher enseignant instructor university universite school college lycee course coursework cours "
+    "homework devoir exam examen "
+    "mechanism mechanisms mecanisme mecanismes mechanics mecanique kinematics cinematique engineering "
+    "ingenieur moodle canvas "
+    "master killer shadow michael jennifer jessica charlie jordan nicolas thomas camille marie julien "
+    "computer ordinateur internet "
+    "winter summer autumn spring hiver ete automne printemps january janvier september septembre "
+    "october octobre "
+    "azerty azertyuiop qwerty qwertyuiop qwertz qwertzuiop abc abcdef password1 passw0rd pass pass "
+    "word correcthorsebatterystaple "
+    "whatever nothing freedom liberte chocolat chocolate butterfly papillon flower liverpool arsenal "
+    "barcelona realmadrid".split()
 )
 _ROWS = (
-    "01234567890123456789", "123456789101112131415161718192021222324", "abcdefghijklmnopqrstuvwxyz", "qwertyuiopasdfghjklzxcvbnm", "azertyuiopqsdfghjklmwxcvbn",
-    "qwertzuiopasdfghjklyxcvbnm", "1qaz2wsx3edc4rfv5tgb6yhn7ujm", "a1z2e3r4t5y6u7i8o9p0", "q1w2e3r4t5y6u7i8o9p0",
-)  # fmt: skip
+    "01234567890123456789",
+    "123456789101112131415161718192021222324",
+    "abcdefghijklmnopqrstuvwxyz",
+    "qwertyuiopasdfghjklzxcvbnm",
+    "azertyuiopqsdfghjklmwxcvbn",
+    "qwertzuiopasdfghjklyxcvbnm",
+    "1qaz2wsx3edc4rfv5tgb6yhn7ujm",
+    "a1z2e3r4t5y6u7i8o9p0",
+    "q1w2e3r4t5y6u7i8o9p0",
+)
 _LIKE = str.maketrans("013457@$€!", "oieastasei")  #: digits and signs used for letters
 _LONGEST_UNIT = 4  #: characters in a repeated unit
 

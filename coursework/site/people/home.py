@@ -48,7 +48,8 @@ def shared_file(request: Request) -> Response:
 
 
 def service_worker(request: Request) -> Response:
-    """Return the script that opens seen pages without a network; it stands at the root, since it is for all pages."""
+    """Return the script that opens seen pages without a network; it stands at the root, since it is for all
+    pages."""
     static_file = request.site.pages.static("service-worker.js")
     assert static_file is not None
     return Response(static_file[1], media_type=static_file[0])

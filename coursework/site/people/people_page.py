@@ -64,9 +64,18 @@ def everybody(request: Request) -> Response:
     page = page_of(request, lines, lambda line: f"{line.name} {line.login}")
     may_invite = {role: may(request.user, to_invite(role)) for role in ROLES}
     return request.render(
-        "site/instructor/people", page=page, lines=page.rows, added=_count(request.query_params.get("added", "")), may_invite=may_invite,
-        staff_roles=_staff_roles(request), any=_ANY, areas=(), groups=groups, assignments=assignments, left=bool(request.query_params.get("left")),
-    )  # fmt: skip
+        "site/instructor/people",
+        page=page,
+        lines=page.rows,
+        added=_count(request.query_params.get("added", "")),
+        may_invite=may_invite,
+        staff_roles=_staff_roles(request),
+        any=_ANY,
+        areas=(),
+        groups=groups,
+        assignments=assignments,
+        left=bool(request.query_params.get("left")),
+    )
 
 
 def _staff_roles(request: Request) -> list[str]:
@@ -203,10 +212,18 @@ def person_page(request: Request) -> Response:
         assignments = _titled_assignments(request, connection)
         ties = _ties(connection, person.id)
     return request.render(
-        "site/instructor/person", line=line, last=last, columns=person.columns or {}, roles=ROLES,
-        may_invite=may(request.user, to_invite(line.role)), groups={**groups, **_gone(areas, groups)},
-        assignments=assignments, areas=areas, any=_ANY, ties=ties,
-    )  # fmt: skip
+        "site/instructor/person",
+        line=line,
+        last=last,
+        columns=person.columns or {},
+        roles=ROLES,
+        may_invite=may(request.user, to_invite(line.role)),
+        groups={**groups, **_gone(areas, groups)},
+        assignments=assignments,
+        areas=areas,
+        any=_ANY,
+        ties=ties,
+    )
 
 
 def _titled_assignments(request: Request, connection: Connection) -> list[tuple[int, str]]:
@@ -316,19 +333,35 @@ def _count(text: str) -> int | None:
 
 ROUTES = (
     Route(
-        "/desk/people", everybody, Permission.PEOPLE_READ, takes_forms=True,
-        form_permission=Permission.PEOPLE_INVITE_STUDENTS, audit_event="links taken",
+        "/desk/people",
+        everybody,
+        Permission.PEOPLE_READ,
+        takes_forms=True,
+        form_permission=Permission.PEOPLE_INVITE_STUDENTS,
+        audit_event="links taken",
     ),
     Route("/desk/people/add", add, Permission.PEOPLE_ADD, takes_forms=True, limit="upload", budget=DESK_FILE),
-    Route("/desk/people/add-staff", add_staff, Permission.PEOPLE_INVITE_STAFF, takes_forms=True, has_page=False),
+    Route(
+        "/desk/people/add-staff", add_staff, Permission.PEOPLE_INVITE_STAFF, takes_forms=True, has_page=False
+    ),
     Route("/desk/people/{person}", person_page, Permission.PEOPLE_READ),
     Route(
-        "/desk/people/{person}/invitation", invite_person, Permission.PEOPLE_INVITE_STUDENTS, takes_forms=True, has_page=False,
+        "/desk/people/{person}/invitation",
+        invite_person,
+        Permission.PEOPLE_INVITE_STUDENTS,
+        takes_forms=True,
+        has_page=False,
         staff_permission=Permission.PEOPLE_INVITE_STAFF,
     ),
     Route(
-        "/desk/people/{person}/separate", separate_tie, Permission.PEOPLE_INVITE_STUDENTS, takes_forms=True, has_page=False,
+        "/desk/people/{person}/separate",
+        separate_tie,
+        Permission.PEOPLE_INVITE_STUDENTS,
+        takes_forms=True,
+        has_page=False,
         staff_permission=Permission.PEOPLE_INVITE_STAFF,
     ),
-    Route("/desk/people/{person}/role", change_role, Permission.PEOPLE_ROLES, takes_forms=True, has_page=False),
-)  # fmt: skip
+    Route(
+        "/desk/people/{person}/role", change_role, Permission.PEOPLE_ROLES, takes_forms=True, has_page=False
+    ),
+)

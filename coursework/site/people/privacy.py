@@ -180,9 +180,13 @@ def audit(request: Request) -> Response:
     before, subject = number(request.query_params.get("before", "")), number(filters["of"])
     with request.site.store.reading() as connection:
         lines = noted(
-            connection, _LINES, before, by=filters["by"], what=[filters["what"]] if filters["what"] else [],
+            connection,
+            _LINES,
+            before,
+            by=filters["by"],
+            what=[filters["what"]] if filters["what"] else [],
             subject=subject or None,
-        )  # fmt: skip
+        )
         names = {line.id: (line.name, line.created) for line in people(connection)}
         event_kinds = kinds(connection)
     rows = [(line, _about(line, names)) for line in lines]

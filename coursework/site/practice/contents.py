@@ -81,7 +81,8 @@ class ChapterEntry(NamedTuple):
 
     @property
     def next(self) -> ExerciseEntry | None:
-        """Exercise to go on with: one that is due, or one that is not all right yet; None if there is none."""
+        """Exercise to go on with: one that is due, or one that is not all right yet; None if there is
+        none."""
         left = [entry for entry in self.exercises if not entry.is_right or entry.state == "due"]
         return min(left, key=lambda entry: entry.state != "due", default=None)
 
@@ -122,8 +123,8 @@ def _titles(site: Site, lang: str) -> tuple[ChapterEntry, ...]:
 
 
 def _figure(site: Site, chapter: Chapter) -> Markup:
-    """Return the figure of an exercise of a chapter without its letters, as a piece of the page; of one that moves if there
-    is one."""
+    """Return the figure of an exercise of a chapter without its letters, as a piece of the page; of one that
+    moves if there is one."""
     exercises = [site.course[name] for name in chapter.exercises]
     for exercise in sorted(exercises, key=lambda each: not each.is_animated):
         with suppress(CourseworkError):
@@ -183,8 +184,8 @@ class NextStep(NamedTuple):
 
 
 def next_of(request: Request, progress: Progress, after: str = "") -> NextStep | None:
-    """Return the next step for today; None in a course without exercises. ``after`` is the exercise that was done: what is new
-    follows it in the order of study."""
+    """Return the next step for today; None in a course without exercises. ``after`` is the exercise that was
+    done: what is new follows it in the order of study."""
     site = request.site
     order = list(site.cache.get("study order", lambda: site.course.folder.study_order))
     if after in order:

@@ -1,6 +1,7 @@
 """Explore: a driven mechanism with freely chosen lengths and speeds, computed anew with each change.
 
-Its numbers come from the address, or from a variant that is drawn for this page alone; never from what was issued.
+Its numbers come from the address, or from a variant that is drawn for this page alone; never from what was
+issued.
 """
 
 from __future__ import annotations
@@ -49,11 +50,15 @@ def explore(request: Request) -> Response:
     key = (name, typical.exercise.version, request.lang, tuple(values.values()))
     shown = site.explored.get(key, lambda: shown_mechanism(request.lang, typical, choices, values))
     names = {
-        "exercise": name, "explore_title": typical.text.title, "explored": shown, "is_piece": request.is_fragment,
+        "exercise": name,
+        "explore_title": typical.text.title,
+        "explored": shown,
+        "is_piece": request.is_fragment,
         "rows": [_row(request, typical, p, values[p.name]) for p in choices],
         "refused": [typical.exercise.symbol(n) for n, value in read.items() if value is None],
-        "address": f"/explore/{name}", "mechanism": address_of(request, name),
-    }  # fmt: skip
+        "address": f"/explore/{name}",
+        "mechanism": address_of(request, name),
+    }
     return request.render("site/student/explore", **names)
 
 
@@ -63,8 +68,8 @@ def is_explored(exercise: Any) -> bool:
 
 
 def address(variant: Any) -> str:
-    """Return the address of the page with the numbers of a variant; with its usual ones if the variant's do not tell the
-    assembly, since the statement places the crank by another quantity."""
+    """Return the address of the page with the numbers of a variant; with its usual ones if the variant's do
+    not tell the assembly, since the statement places the crank by another quantity."""
     exercise = variant.exercise
     if exercise.spec.driver.poses is not None and exercise.spec.driver.jack is None:
         return f"/explore/{exercise.name}"
@@ -156,7 +161,8 @@ def shown_mechanism(
 def _heard(title: str, rows: Sequence[Curve], lang: str) -> str:
     """Return what is said of a plot to who does not see it: the range of each quantity."""
     ranges = [
-        f"{c.name} {localise(significant(float(np.nanmin(c.values)), 3), lang)} … {localise(significant(float(np.nanmax(c.values)), 3), lang)} {unit_text(c.unit, lang)}"
+        f"{c.name} {localise(significant(float(np.nanmin(c.values)), 3), lang)} … "
+        f"{localise(significant(float(np.nanmax(c.values)), 3), lang)} {unit_text(c.unit, lang)}"
         for c in rows
         if np.isfinite(c.values).any()
     ]
@@ -196,8 +202,10 @@ def _svg(drawing: Any, sentences: list[str], crank: tuple[complex, complex] | No
         track.svg(0) for track in drawing.tracks if not (track.effect == "position" and track.mark)
     )
     return (
-        f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width} {height}" role="img" aria-label="{label}" '
-        f'data-crank="{places}"><g fill="none" stroke="#000" stroke-linecap="round" stroke-linejoin="round">{lines}</g></svg>'
+        f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width} {height}" role="img" '
+        f'aria-label="{label}" '
+        f'data-crank="{places}"><g fill="none" stroke="#000" stroke-linecap="round" '
+        f'stroke-linejoin="round">{lines}</g></svg>'
     )
 
 

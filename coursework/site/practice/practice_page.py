@@ -196,15 +196,20 @@ def _hinted(request: Request, work: Worksheet) -> dict[str, tuple[QuestionHints,
 
 
 def _seen_hints(work: Worksheet, text: str) -> dict[str, tuple[QuestionHints, ...]]:
-    """Return the seen hints of a question, and below them those of the step towards it that the text of a button names."""
+    """Return the seen hints of a question, and below them those of the step towards it that the text of a
+    button names."""
     under, _, name = text.partition(" ")
     return {work.part(under).id: tuple(map(work.hinted, dict.fromkeys((under, name or under))))}
 
 
 def _page(
-    request: Request, work: Worksheet, checked: CheckedAnswers, texts: dict[str, str],
-    hinted: dict[str, tuple[QuestionHints, ...]] | None = None, **more: Any,
-) -> Response:  # fmt: skip
+    request: Request,
+    work: Worksheet,
+    checked: CheckedAnswers,
+    texts: dict[str, str],
+    hinted: dict[str, tuple[QuestionHints, ...]] | None = None,
+    **more: Any,
+) -> Response:
     names = {"others": {}, "came": (), **work.names(checked, texts), **more}
     names["hinted"] = {**names["hinted"], **(hinted or {})}
     for name in names["came"]:
@@ -280,8 +285,8 @@ def read(request: Request) -> Response:
 
 
 def solution(request: Request) -> Response:
-    """Return the worked solution, with what the student drew over the right construction, after a confirmation that the variant
-    then no longer counts."""
+    """Return the worked solution, with what the student drew over the right construction, after a
+    confirmation that the variant then no longer counts."""
     work = _worksheet(request)
     if request.is_post:
         work.attempt.reveal()
@@ -296,16 +301,19 @@ def solution(request: Request) -> Response:
 
 
 def motion(request: Request) -> Response:
-    """Return the mechanism in motion: as its figure alone, until every question is answered or its solution was shown, and
-    not before those of which the motion itself is the answer."""
+    """Return the mechanism in motion: as its figure alone, until every question is answered or its solution
+    was shown, and not before those of which the motion itself is the answer."""
     work = _worksheet(request)
     if not work.variant.exercise.is_animated:
         raise HTTPException("page", 404)
     open_parts = work.attempt.open_parts
     names: dict[str, Any] = {
-        "sheet_page": work, "motion_title": work.variant.text.title, "is_piece": request.is_fragment, "own": BOX_PREFIX,
+        "sheet_page": work,
+        "motion_title": work.variant.text.title,
+        "is_piece": request.is_fragment,
+        "own": BOX_PREFIX,
         "first_to_answer": [(n, k) for n, k in open_parts.items() if n in told_by_motion(work.variant)],
-    }  # fmt: skip
+    }
     if not names["first_to_answer"]:
         key = ("motion", work.exercise, work.seed, work.variant.lang, not open_parts)
         names["motion"] = request.site.cache.get(key, lambda: _motion(work.variant, not open_parts))

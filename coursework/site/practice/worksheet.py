@@ -212,8 +212,8 @@ class Worksheet:
 
     @contextmanager
     def saving(self) -> Iterator[None]:
-        """Store what a form brings, and what the block records, in one transaction after the block; even if the
-        block fails."""
+        """Store what a form brings, and what the block records, in one transaction after the block; even if
+        the block fails."""
         request, answers = self.request, self.attempt.answers
         versions = versions_of(request.form.text("versions"))
         self._progress.waits = True
@@ -224,8 +224,13 @@ class Worksheet:
                 with request.site.store.begin() as connection:
                     if not request.is_fragment:  # a script stores the texts by itself
                         self.drafts, others = save_form_drafts(
-                            connection, request, self.name, self._form_texts, lambda boxes: self._contents(boxes, answers), versions,
-                        )  # fmt: skip
+                            connection,
+                            request,
+                            self.name,
+                            self._form_texts,
+                            lambda boxes: self._contents(boxes, answers),
+                            versions,
+                        )
                         self.others = {
                             n: box
                             for n, box in others.items()
@@ -320,7 +325,10 @@ class Worksheet:
     def _with_buttons(self, html: str, under: str) -> Markup:
         def button(match: re.Match[str]) -> str:
             action, name, text = match.groups()
-            return f'<button class="plain" name="{action}" value="{escape(under)} {name}" formaction="#hints-{BOX_PREFIX}{escape(under)}">{text}</button>'
+            return (
+                f'<button class="plain" name="{action}" value="{escape(under)} {name}" '
+                f'formaction="#hints-{BOX_PREFIX}{escape(under)}">{text}</button>'
+            )
 
         return Markup(_ASKS.sub(button, html))
 
@@ -448,7 +456,8 @@ class Worksheet:
         return section_links(self.lessons[0]) if self.lessons else ()
 
     def _help_with(self, mark: Mark) -> LessonLink | None:
-        """Return the section that explains the mistake of a wrong answer, or else the first that teaches the exercise."""
+        """Return the section that explains the mistake of a wrong answer, or else the first that teaches the
+        exercise."""
         if mark.verdict in ("correct", "to_mark", "missing", "unreadable"):
             return None
         _, _, mistake = mark.verdict.partition("mistake:")

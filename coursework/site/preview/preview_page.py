@@ -32,7 +32,9 @@ VIEWS = {
 _LARGEST = 2**31  #: seed
 _DIGITS = 12  #: of a seed in an address: a longer number exceeds the largest seed
 _PAGE_HEADERS = {
-    "content-security-policy": "default-src 'none'; img-src 'self' data:; style-src 'self'; script-src 'self'; connect-src 'self'; "
+    "content-security-policy": "default-src 'none'; img-src 'self' data:; style-src 'self'; "
+    "script-src 'self'; connect-src "
+    "'self'; "
     "frame-src 'self'; base-uri 'none'; form-action 'self'; frame-ancestors 'none'",
     "cache-control": "no-store",
     "x-content-type-options": "nosniff",
@@ -100,11 +102,21 @@ class _PreviewPages:
         content = content._replace(fault=localised(content.fault, choice.lang))
         texts = words(choice.lang, "site")["preview"]
         names = {
-            "lang": choice.lang, "said": texts, "exercise": work.exercise, "choice": choice, "stamp": stamp,
-            "views": list(VIEWS), "spoken": properties["languages"], "version": properties["version"], "shown": content,
-            "framed": VIEWS[choice.view][1] and content.content is not None, "check": work.check, "file": self._pages.file,
-            "worked": _clock(content.worked), "words": words(choice.lang),
-        }  # fmt: skip
+            "lang": choice.lang,
+            "said": texts,
+            "exercise": work.exercise,
+            "choice": choice,
+            "stamp": stamp,
+            "views": list(VIEWS),
+            "spoken": properties["languages"],
+            "version": properties["version"],
+            "shown": content,
+            "framed": VIEWS[choice.view][1] and content.content is not None,
+            "check": work.check,
+            "file": self._pages.file,
+            "worked": _clock(content.worked),
+            "words": words(choice.lang),
+        }
         return Response(
             self._pages.rendered("site/instructor/preview", choice.lang, names),
             200,

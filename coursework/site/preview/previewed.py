@@ -113,9 +113,13 @@ def _key(folder: str | None, exercise: str, request: ViewRequest) -> Any:
     variant = _variant(folder, exercise, request)
     key = variant.key
     return {
-        "given": [(name, repr(value), variant.record["given"][name]["unit"]) for name, value in variant.given.items()],
+        "given": [
+            (name, repr(value), variant.record["given"][name]["unit"])
+            for name, value in variant.given.items()
+        ],
         "parts": [
-            (p.id, p.quantity, str(key.reference[p.quantity]), p.unit, p.kind, p.points) for p in variant.parts
+            (p.id, p.quantity, str(key.reference[p.quantity]), p.unit, p.kind, p.points)
+            for p in variant.parts
         ],
         "mistakes": [
             (name, part.id, str(values[part.quantity]))
@@ -123,15 +127,20 @@ def _key(folder: str | None, exercise: str, request: ViewRequest) -> Any:
             for part in variant.parts
             if values.get(part.quantity) is not None
         ],
-    }  # fmt: skip
+    }
 
 
 def _check(folder: str | None, exercise: str, request: ViewRequest) -> Any:
     report = checks.check(open_course(folder)[exercise], request.variants)
     (row,) = check_report.table([report])
     notes = [str(note) for note in check_report.notes([report])]
-    return {"passed": report.passed, "failures": report.failures[:_MOST_FAILURES], "more": max(0, len(report.failures) - _MOST_FAILURES),
-            "row": {k: str(v) for k, v in row.items()}, "notes": notes}  # fmt: skip
+    return {
+        "passed": report.passed,
+        "failures": report.failures[:_MOST_FAILURES],
+        "more": max(0, len(report.failures) - _MOST_FAILURES),
+        "row": {k: str(v) for k, v in row.items()},
+        "notes": notes,
+    }
 
 
 _VIEWS = {"about": _about, "sheet": _sheet, "solution": _solution, "key": _key, "check": _check}

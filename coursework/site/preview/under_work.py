@@ -147,7 +147,8 @@ class EditedExercise:
     # --------------------------------------------------------------------- files
 
     def _watch(self) -> None:
-        """Take a new state once its files have not changed for a moment, since an editor may write in steps."""
+        """Take a new state once its files have not changed for a moment, since an editor may write in
+        steps."""
         current = before = self._files()
         while not self._ended.wait(_EVERY):
             now = self._files()

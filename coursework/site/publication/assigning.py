@@ -100,7 +100,12 @@ def _store(site: Site, wanted: AssignmentRequest, outcome: _Outcome, by: str, ev
         connection.execute(update(assignment).where(assignment.c.id == number).values(asked=definition))
         prepare_soon(site, connection, number)
         note(
-            connection, site.clock(), by, event, assignment=wanted.name, students=len(wanted.students),
+            connection,
+            site.clock(),
+            by,
+            event,
+            assignment=wanted.name,
+            students=len(wanted.students),
             make_up=list(wanted.make_up),
-        )  # fmt: skip
+        )
     return number

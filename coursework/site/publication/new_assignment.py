@@ -112,8 +112,8 @@ class StatedAssignment(NamedTuple):
 
 
 def stated_assignment(request: Request) -> StatedAssignment:
-    """Return the assignment that the form states: as a file, as the text of one, or by chosen exercises. What is
-    chosen becomes a file, which is read as any other.
+    """Return the assignment that the form states: as a file, as the text of one, or by chosen exercises. What
+    is chosen becomes a file, which is read as any other.
 
     Raises
     ------
@@ -144,7 +144,8 @@ def stated_assignment(request: Request) -> StatedAssignment:
 
 
 def _chosen(request: Request) -> tuple[str, dict[str, Any]]:
-    """Return name and table of an assignment of chosen exercises. Raises BadInput: the form is inconsistent."""
+    """Return name and table of an assignment of chosen exercises. Raises BadInput: the form is
+    inconsistent."""
     form, texts = request.form, request.words["publishing"]["faults"]
     title, names_of_course = form.text("title").strip()[:200], set(request.site.course.names)
     name = _name(form.text("name") or title)
@@ -182,7 +183,8 @@ def _place(text: str, index: int) -> tuple[float, int]:
 
 
 def _asked(request: Request, name: str) -> dict[str, Any]:
-    """Return the entry of a chosen exercise: the ticked parts if they are not the usual ones, and the points."""
+    """Return the entry of a chosen exercise: the ticked parts if they are not the usual ones, and the
+    points."""
     form, texts = request.form, request.words["publishing"]["faults"]
     spec = request.site.course[name].spec
     entry: dict[str, Any] = {"name": name}
@@ -282,7 +284,8 @@ class ChosenExercise(NamedTuple):
 
 
 def proposed(request: Request) -> FormData:
-    """Return the form as an address fills it in: with the exercises that it names, and the title of the first."""
+    """Return the form as an address fills it in: with the exercises that it names, and the title of the
+    first."""
     course = request.site.course
     chosen = [name for name in dict.fromkeys(request.query_params.getlist("exercise")) if name in course]
     return FormData(

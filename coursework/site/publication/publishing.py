@@ -138,8 +138,8 @@ class PagesPreview(NamedTuple):
 
 
 def _looked_at(request: Request) -> Response:
-    """Return the form with the parts of the chosen exercises, and the pages of the paper with variants that belong
-    to nobody."""
+    """Return the form with the parts of the chosen exercises, and the pages of the paper with variants that
+    belong to nobody."""
     try:
         stated = new_assignment.stated_assignment(request)
         paper = preview_paper(request.site, stated.definition, request.lang)
@@ -151,9 +151,12 @@ def _looked_at(request: Request) -> Response:
     pages = tuple(_data_url("image/png", image) for image in images[:_MOST_PAGES])
     points = sum(part.points for variant in paper.variants for part in variant.parts)
     look = PagesPreview(
-        stated, pages, len(images) - len(pages), localise(f"{points:g}", request.lang),
+        stated,
+        pages,
+        len(images) - len(pages),
+        localise(f"{points:g}", request.lang),
         _data_url("application/toml", stated.source.encode("utf-8", "backslashreplace")),
-    )  # fmt: skip
+    )
     return _new_page(request, look=look)
 
 
@@ -166,9 +169,16 @@ def _new_page(
 ) -> Response:
     exercise_groups = new_assignment.exercise_groups(request.site.course, request.lang)
     return request.render(
-        "site/instructor/publish_new", status, exercise_groups=exercise_groups, problem=problem, sent=request.form, most_versions=MOST_VERSIONS,
-        accounts=len(new_assignment.students_with_accounts(request)), look=look, chosen=new_assignment.chosen_exercises(request),
-    )  # fmt: skip
+        "site/instructor/publish_new",
+        status,
+        exercise_groups=exercise_groups,
+        problem=problem,
+        sent=request.form,
+        most_versions=MOST_VERSIONS,
+        accounts=len(new_assignment.students_with_accounts(request)),
+        look=look,
+        chosen=new_assignment.chosen_exercises(request),
+    )
 
 
 def _take_in(request: Request, new_one: new_assignment.NewAssignment) -> int:
@@ -200,7 +210,8 @@ def assignment_page(request: Request) -> Response:
 
 
 def _usual_publication(listed: AssignmentOverview) -> Publication:
-    """Return the publication that the form proposes first: with the working time that the assignment states."""
+    """Return the publication that the form proposes first: with the working time that the assignment
+    states."""
     minutes = minutes_of(text_in(listed.stated.get("duration") or {}, ""))
     return Publication(minutes=minutes, takes_saved=minutes is not None)
 
@@ -220,13 +231,34 @@ def _page(
         students, handed_in = people_counts(connection)
     page = page_of(request, people, lambda holder: holder.student)
     return request.render(
-        "site/instructor/publish", 422 if faults or problem else 200, one=listed, students=students[listed.id], handed_in=handed_in[listed.id], said_now=publication, faults=faults, problem=problem,
-        page=page, people=page.rows, has_versions=any(holder.letter for holder in people), is_issued=bool(people), extensions=more, noted=noted, phase=_phase(listed.publication, request.received_at), zone=zone_name(request.received_at),
-        field=field_text, moment=lambda at: "" if at is None else moment_text(at, request.lang),
-        exact=lambda at: exact_text(at, request.lang), late_rules=LATE, feedback_rules=FEEDBACK, answer_rules=ANSWERS,
-        sittings=SITTINGS, sittings_now=listed.stated.get("sittings", SITTINGS[0]), most_tries=MOST_TRIES,
-        most_minutes=MOST_MINUTES, times=times,
-    )  # fmt: skip
+        "site/instructor/publish",
+        422 if faults or problem else 200,
+        one=listed,
+        students=students[listed.id],
+        handed_in=handed_in[listed.id],
+        said_now=publication,
+        faults=faults,
+        problem=problem,
+        page=page,
+        people=page.rows,
+        has_versions=any(holder.letter for holder in people),
+        is_issued=bool(people),
+        extensions=more,
+        noted=noted,
+        phase=_phase(listed.publication, request.received_at),
+        zone=zone_name(request.received_at),
+        field=field_text,
+        moment=lambda at: "" if at is None else moment_text(at, request.lang),
+        exact=lambda at: exact_text(at, request.lang),
+        late_rules=LATE,
+        feedback_rules=FEEDBACK,
+        answer_rules=ANSWERS,
+        sittings=SITTINGS,
+        sittings_now=listed.stated.get("sittings", SITTINGS[0]),
+        most_tries=MOST_TRIES,
+        most_minutes=MOST_MINUTES,
+        times=times,
+    )
 
 
 class WorkingTime(NamedTuple):
@@ -274,14 +306,18 @@ def holders(connection: Connection, number: int) -> list[PaperHolder]:
     """Return the students with a paper, in the order of issue."""
     query = (
         select(
-            dealt.c.person_id, dealt.c.student, func.max(variant.c.letter), func.max(dealt.c.sitting), func.max(dealt.c.lang),
+            dealt.c.person_id,
+            dealt.c.student,
+            func.max(variant.c.letter),
+            func.max(dealt.c.sitting),
+            func.max(dealt.c.lang),
             func.min(dealt.c.place),
         )
         .select_from(dealt.join(variant))
         .where(variant.c.assignment_id == number, dealt.c.person_id.is_not(None))
         .group_by(dealt.c.person_id, dealt.c.student)
         .order_by(func.min(dealt.c.place))
-    )  # fmt: skip
+    )
     submitted = select(delivery.c.person_id, func.count()).where(delivery.c.assignment_id == number)
     done: dict[int, int] = dict(connection.execute(submitted.group_by(delivery.c.person_id)).all())
     return [
@@ -519,9 +555,18 @@ def _seen(
 ) -> Response:
     pieces = paper.pieces()
     return request.render(
-        "site/student/assignment", state=state, form={}, versions="{}", problem="", draws=bool(paper.drawn), look=look, zone=zone_name(request.received_at),
-        back=f"/desk/assignments/{listed.id}", paper_head=Markup(pieces.head), paper_body=Markup(pieces.body),
-    )  # fmt: skip
+        "site/student/assignment",
+        state=state,
+        form={},
+        versions="{}",
+        problem="",
+        draws=bool(paper.drawn),
+        look=look,
+        zone=zone_name(request.received_at),
+        back=f"/desk/assignments/{listed.id}",
+        paper_head=Markup(pieces.head),
+        paper_body=Markup(pieces.body),
+    )
 
 
 def issued_file(request: Request) -> Response:

@@ -175,7 +175,8 @@ class Chain(_Loops):
     Raises
     ------
     WrongValue, UnknownName
-        As :func:`~coursework.structure.spatial_chains.joints.joint_of`; bodies that nothing links to the frame.
+        As :func:`~coursework.structure.spatial_chains.joints.joint_of`; bodies that nothing links to the
+        frame.
     CannotTell
         When a number is asked for that hangs on digits which the data do not hold.
     """
@@ -202,7 +203,8 @@ def _projected(name: str, frame: tuple[Vector, Vector, Vector], pitch: float) ->
         if min(across, along) > _IN_PLANE_OR_SQUARE:
             x, y, z = vector
             raise WrongValue(
-                "in a plane problem axes and normals lie in the plane xy or along z; that of a {name} is ({x:.6g}, {y:.6g}, {z:.6g})",
+                "in a plane problem axes and normals lie in the plane xy or along z; that of a {name} "
+                "is ({x:.6g}, {y:.6g}, {z:.6g})",
                 name=Message(name),
                 x=x,
                 y=y,

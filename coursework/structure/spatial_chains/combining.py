@@ -14,7 +14,8 @@ from coursework.structure.spatial_chains.poses import all_free_at_every_pose
 from coursework.structure.spatial_chains.ranks import Rank, decompose
 from coursework.structure.spatial_chains.recognition import Equivalent, recognise
 
-#: What joints in parallel demand of their makers: nothing, parallel or square directions, distances and centres, or both.
+#: What joints in parallel demand of their makers: nothing, parallel or square directions, distances and
+#: centres, or both.
 CONDITIONS = ("none", "directions", "positions", "both")
 
 
@@ -77,7 +78,8 @@ class _Combined:
     def _spanned(
         self, rows_of: Callable[[Joint, Vector, float], list[list[float]]], subject: str
     ) -> tuple[Rank, np.ndarray, np.ndarray]:
-        """Return the rank of the rows of all joints, and bases of what they span and of what is perpendicular to it."""
+        """Return the rank of the rows of all joints, and bases of what they span and of what is perpendicular
+        to it."""
         at = self.measure
         rows = [row for joint in self.joints for row in rows_of(joint, at.origin, at.length)]
         matrix = np.array(rows).reshape(-1, 6)

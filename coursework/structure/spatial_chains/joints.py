@@ -4,8 +4,8 @@ A joint has a right-handed frame (u, v, w) of unit vectors: u is its axis, or it
 v is the normal of a contact along a line. In that frame each joint but the helical one leaves some of the
 six elementary motions free and transmits the actions that go with the others.
 
-Twists are written (rotation, velocity) and wrenches (moment, force) at one point, lengths divided by a length of
-the mechanism's size; the power of a wrench in a twist is then their plain scalar product.
+Twists are written (rotation, velocity) and wrenches (moment, force) at one point, lengths divided by a length
+of the mechanism's size; the power of a wrench in a twist is then their plain scalar product.
 """
 
 from __future__ import annotations
@@ -119,7 +119,8 @@ def frame_about(u: Vector) -> tuple[Vector, Vector, Vector]:
 
 @dataclass(frozen=True)
 class Joint:
-    """Joint at its position. ``frame`` holds u, v, w; ``point`` is None where the position does not matter."""
+    """Joint at its position. ``frame`` holds u, v, w; ``point`` is None where the position does not
+    matter."""
 
     name: str
     frame: tuple[Vector, Vector, Vector]
@@ -347,7 +348,8 @@ def _frame(given: Mapping[str, Any], kind: JointKind, name: str) -> tuple[Vector
     n = _direction(given, "normal")
     if abs(dot(u, n)) > _SQUARE:
         raise WrongValue(
-            "the axis and the normal of a {name} must be perpendicular; the cosine of their angle is {cosine:.3g}",
+            "the axis and the normal of a {name} must be perpendicular; the cosine of their angle is "
+            "{cosine:.3g}",
             name=Message(name),
             cosine=dot(u, n),
         )

@@ -1,8 +1,8 @@
 """Freedoms that an open chain has at every pose, not only at the given one.
 
-Joints are moved without limit. Rotations span all directions at every pose only where one joint has them all: hinges in a row
-always come to lie in one plane somewhere. Translations span space at every pose if two sets of them do, each carried along by
-joints that do not turn it, whatever the hinges between them do.
+Joints are moved without limit. Rotations span all directions at every pose only where one joint has them all:
+hinges in a row always come to lie in one plane somewhere. Translations span space at every pose if two sets
+of them do, each carried along by joints that do not turn it, whatever the hinges between them do.
 """
 
 from __future__ import annotations

@@ -50,7 +50,8 @@ def is_zero(value: float, subject: str) -> bool:
     size = abs(value)
     if ZERO < size < DISTINCT:
         raise CannotTell(
-            "cannot tell whether {subject}: it is off by {size:.2g} of the whole, less than {distinct:g}, which would be meant, and more than {zero:g}, which would be rounding",
+            "cannot tell whether {subject}: it is off by {size:.2g} of the whole, less than "
+            "{distinct:g}, which would be meant, and more than {zero:g}, which would be rounding",
             subject=Message(subject),
             size=size,
             distinct=DISTINCT,
@@ -92,7 +93,9 @@ def decompose(
     doubtful = relative[(relative > ZERO) & (relative < DISTINCT)]
     if len(doubtful):
         raise CannotTell(
-            "cannot tell the rank of {subject}: a singular value is {size:.2g} of the largest, neither a zero (below {zero:g}) nor distinct from it (above {distinct:g}); are two axes meant to be parallel, or two points to coincide?",
+            "cannot tell the rank of {subject}: a singular value is {size:.2g} of the largest, neither "
+            "a zero (below {zero:g}) nor distinct from it (above {distinct:g}); are two axes meant to "
+            "be parallel, or two points to coincide?",
             subject=Message(subject),
             size=doubtful[0],
             zero=ZERO,

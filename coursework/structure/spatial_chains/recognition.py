@@ -110,7 +110,8 @@ def _along(vector: np.ndarray) -> tuple[float, float, float]:
 
 
 def _foot(line: np.ndarray, rest: np.ndarray) -> np.ndarray:
-    """Return the point of the axis of (line, rest) nearest to the origin, where rest = arm × line + a pitch."""
+    """Return the point of the axis of (line, rest) nearest to the origin, where rest = arm × line + a
+    pitch."""
     return np.cross(line, rest) / (line @ line)
 
 

@@ -1,4 +1,5 @@
-"""Twists and wrenches at a point: transport to another point, and their components that may differ from zero."""
+"""Twists and wrenches at a point: transport to another point, and their components that may differ from
+zero."""
 
 from __future__ import annotations
 

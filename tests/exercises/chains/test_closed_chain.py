@@ -1,4 +1,5 @@
-"""Closed chains: the answers against exact ranks of whole numbers, and lists of joints that a caller gives."""
+"""Closed chains: the answers against exact ranks of whole numbers, and lists of joints that a caller
+gives."""
 
 import numpy as np
 import pytest

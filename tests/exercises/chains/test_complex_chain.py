@@ -66,7 +66,8 @@ def hinge(one, other, point, axis=Z):
 def bennett(first, bodies, alpha=0.5, a=40.0, b=60.0, angle=1.1):
     """Four hinges whose distances are as the sines of their twists: axes found by walking around the loop.
 
-    Links a, b, a, b with twists alpha, beta; the closing angles obey tan(θ/2) tan(φ/2) = sin((β+α)/2)/sin((β-α)/2).
+    Links a, b, a, b with twists alpha, beta; the closing angles obey tan(θ/2) tan(φ/2) =
+    sin((β+α)/2)/sin((β-α)/2).
     """
     beta = math.asin(b * math.sin(alpha) / a)
     other = 2 * math.atan(math.sin((beta + alpha) / 2) / math.sin((beta - alpha) / 2) / math.tan(angle / 2))

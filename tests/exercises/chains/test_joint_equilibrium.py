@@ -1,4 +1,5 @@
-"""Equilibrium of a joint: the six equations in exact fractions, and ranks of the wrenches that joints may pass on."""
+"""Equilibrium of a joint: the six equations in exact fractions, and ranks of the wrenches that joints may
+pass on."""
 
 from fractions import Fraction
 

@@ -1,4 +1,5 @@
-"""Twists and wrenches of joints at a point: against exact fractions, whole numbers, and what students write."""
+"""Twists and wrenches of joints at a point: against exact fractions, whole numbers, and what students
+write."""
 
 from fractions import Fraction
 from math import isqrt

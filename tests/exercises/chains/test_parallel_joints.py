@@ -34,7 +34,8 @@ def test_every_arrangement_is_drawn():
 
 
 def conditions(joints):
-    """Angular and linear ones of joints in whole numbers: actions that balance one another, without a force and with."""
+    """Angular and linear ones of joints in whole numbers: actions that balance one another, without a force
+    and with."""
     rows, pure = [], []
     for joint in joints:
         for row in actions(*joint):
@@ -63,19 +64,28 @@ def test_the_conditions_are_those_of_whole_numbers_and_all_are_met():
     ("joints", "condition"),
     [
         # Two sleeves on one shaft: coaxial.
-        ([{"joint": "cylindrical", "axis": (2, 3, 6), "point": p} for p in ((0, 0, 0), (20, 30, 60))], "both"),
+        (
+            [{"joint": "cylindrical", "axis": (2, 3, 6), "point": p} for p in ((0, 0, 0), (20, 30, 60))],
+            "both",
+        ),
         # A plate on two planes that meet: at a right angle or not, one direction.
         ([{"joint": "planar", "normal": n} for n in ((0, 3, 4), (1, 2, 2))], "directions"),
         # A ball in a ball's seat: centres that coincide.
         ([{"joint": "spherical", "point": (7, -3, 2)}] * 2, "positions"),
         # A pin in a groove and a ball: nothing.
-        ([{"joint": "spherical", "point": (0, 0, 0)}, {"joint": "annular", "axis": (1, 2, 2), "point": (10, 20, 20)}], "none"),
+        (
+            [
+                {"joint": "spherical", "point": (0, 0, 0)},
+                {"joint": "annular", "axis": (1, 2, 2), "point": (10, 20, 20)},
+            ],
+            "none",
+        ),
         # Two slides anywhere, parallel.
         ([{"joint": "prismatic", "axis": (0, 3, 4)}] * 2, "both"),
         # A fixed plate between two planes that are parallel: a thickness as well.
         ([{"joint": "planar", "normal": (1, 2, 2)}] * 2, "both"),
     ],
-)  # fmt: skip
+)
 def test_what_must_be_made_exactly(joints, condition):
     assert EXERCISE.solve(joints=joints, only="condition") == {"condition": condition}
 

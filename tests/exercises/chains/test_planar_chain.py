@@ -1,4 +1,5 @@
-"""Plane chains: the answers against exact motions of the bodies in the plane and in space, and the course's table."""
+"""Plane chains: the answers against exact motions of the bodies in the plane and in space, and the course's
+table."""
 
 import numpy as np
 import pytest
@@ -25,7 +26,8 @@ IN_PLANE = {
     ("planar", "z"): "free",
     ("point_contact", "z"): "free",
 }
-#: A direction in the plane that is neither x nor y is as x is, a line of contact with its normal in the plane.
+#: A direction in the plane that is neither x nor y is as x is, a line of contact with its normal in the
+#: plane.
 INCLINED = ("3 4 0", "4 -3 0")
 IN_PLANE |= {
     (name, way): kind for (name, along), kind in IN_PLANE.items() if along == "x" for way in INCLINED
@@ -94,7 +96,8 @@ def from_(place, length, angle):
 
 
 def test_the_three_loop_shaper_of_the_notes_is_given_as_it_stands():
-    """Figure 14: a four-bar whose coupler ABE drives a block on the bar DF, and by a rod a ram; the bar is at any angle."""
+    """Figure 14: a four-bar whose coupler ABE drives a block on the bar DF, and by a rod a ram; the bar is at
+    any angle."""
     shaper = coursework.open_course()["three_loop_shaper"]
     for seed in range(5):
         variant = shaper.variant(seed)
@@ -198,8 +201,13 @@ def test_loops_in_the_plane_count_three_each():
     ]
     a = EXERCISE.solve(joints=joints, only=("gamma", "Nc", "rc", "m", "Ns", "h", "comparison", "h_space"))
     assert {k: a[k] for k in ("gamma", "Nc", "rc", "m", "Ns", "h")} == {
-        "gamma": 2, "Nc": 7, "rc": 6, "m": 1, "Ns": 14, "h": 0,
-    }  # fmt: skip
+        "gamma": 2,
+        "Nc": 7,
+        "rc": 6,
+        "m": 1,
+        "Ns": 14,
+        "h": 0,
+    }
     assert a["comparison"] == "hidden"
 
 

@@ -177,7 +177,8 @@ def test_a_students_own_coefficients_count():
 
 
 def test_one_answer_that_fits_the_other_assembly_by_chance_exchanges_nothing(course):
-    """Of four answers one is right in its box: had the groups been exchanged, another would fit instead and none more."""
+    """Of four answers one is right in its box: had the groups been exchanged, another would fit instead and
+    none more."""
     variant = course["four_bar_positions"].variant(3, "en")
     right = {part.id: variant.solution()[part.quantity] for part in variant.parts}
     pairs = variant.exercise.spec.either_order

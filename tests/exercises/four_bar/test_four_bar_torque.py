@@ -1,4 +1,5 @@
-"""Torque of a four-bar linkage: against three bodies in fifty digits, and near a dead point and a change point."""
+"""Torque of a four-bar linkage: against three bodies in fifty digits, and near a dead point and a change
+point."""
 
 import itertools
 
@@ -17,9 +18,24 @@ EFFECTS = ("load", "gravity", "inertia")
 ANSWERS = ("torque", "R_A", "R_B", "R_C", "R_O")
 ACCELERATIONS = {"alpha3", "alpha4", "a_G3_x", "a_G3_y", "a_G4_x", "a_G4_y"}
 PLAIN = {
-    "r1": 400.0, "r2": 120.0, "r3": 380.0, "r4": 300.0, "theta2": 50.0, "omega2": 8.0, "alpha2": -20.0, "mode": "open",
-    "m2": 9.0, "J2": 0.3, "s3": 0.4, "m3": 8.0, "J3": 0.15, "s4": 0.55, "m4": 11.0, "J4": 0.14, "M": 45.0,
-}  # fmt: skip
+    "r1": 400.0,
+    "r2": 120.0,
+    "r3": 380.0,
+    "r4": 300.0,
+    "theta2": 50.0,
+    "omega2": 8.0,
+    "alpha2": -20.0,
+    "mode": "open",
+    "m2": 9.0,
+    "J2": 0.3,
+    "s3": 0.4,
+    "m3": 8.0,
+    "J3": 0.15,
+    "s4": 0.55,
+    "m4": 11.0,
+    "J4": 0.14,
+    "M": 45.0,
+}
 LENGTHS = {name: PLAIN[name] for name in ("r1", "r2", "r3", "r4", "theta2", "mode")}
 
 every_seed = pytest.mark.parametrize("seed", sampled(range(20), range(6)))
@@ -67,8 +83,8 @@ def moments(arm):
 def three_bodies(given, effects):
     """Newton and Euler for crank, coupler and rocker, each about its own centre of mass: a linear system.
 
-    Unknown: the forces at O (of the frame on the crank), A (crank on coupler), B (coupler on rocker), C (frame on
-    rocker), two components each, and the torque.
+    Unknown: the forces at O (of the frame on the crank), A (crank on coupler), B (coupler on rocker), C
+    (frame on rocker), two components each, and the torque.
     """
     with mpmath.workdps(50):
         motion = Motion(given)
@@ -145,7 +161,8 @@ def test_the_stated_mechanism_bears_the_same_over_a_turn(seed):
 
 @each_row("away", [1.0, 1e-3, 1e-6, 1e-9])
 def test_the_digits_stay_beside_a_change_point(away):
-    """Bars of 50, 70, 80 and 100: at half a turn they lie on one line, where every force grows without bound."""
+    """Bars of 50, 70, 80 and 100: at half a turn they lie on one line, where every force grows without
+    bound."""
     given = {**PLAIN, "r1": 400.0, "r2": 200.0, "r3": 280.0, "r4": 320.0, "theta2": 180.0 - away}
     for effects in (("load",), ("gravity",), EFFECTS):
         found = EXERCISE.solve(**given, effects=effects, only=ANSWERS)

@@ -1,5 +1,5 @@
-"""Instant centres at fifty digits: the point of each body pair that moves alike, from the places of the pins a moment
-before and after."""
+"""Instant centres at fifty digits: the point of each body pair that moves alike, from the places of the pins
+a moment before and after."""
 
 import mpmath
 from tables import each_row

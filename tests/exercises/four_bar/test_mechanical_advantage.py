@@ -1,4 +1,5 @@
-"""Mechanical advantage: against fifty digits, by the instant centre of the coupler, and where nothing moves."""
+"""Mechanical advantage: against fifty digits, by the instant centre of the coupler, and where nothing
+moves."""
 
 import mpmath
 import numpy as np
@@ -11,9 +12,15 @@ from coursework.errors import Cycle, Undefined
 EXERCISE = coursework.open_course()["mechanical_advantage"]
 ASKED = tuple(part.quantity for part in EXERCISE.spec.parts)
 PLAIN = {
-    "r1": 200.0, "r2": 60.0, "r3": 180.0, "r4": 150.0, "theta2": 50.0, "omega2": 7.0, "mode": "open",
+    "r1": 200.0,
+    "r2": 60.0,
+    "r3": 180.0,
+    "r4": 150.0,
+    "theta2": 50.0,
+    "omega2": 7.0,
+    "mode": "open",
     "F_e": 100.0,
-}  # fmt: skip
+}
 
 
 def exact(r1, r2, r3, r4, theta2, omega2, mode, F_e):

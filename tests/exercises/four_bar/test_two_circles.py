@@ -1,4 +1,5 @@
-"""Two circles: B by ruler and compass, in either order, at any scale and origin, judged from the student's own points."""
+"""Two circles: B by ruler and compass, in either order, at any scale and origin, judged from the student's
+own points."""
 
 import cmath
 import math
@@ -13,8 +14,14 @@ COURSE = coursework.open_course()
 EXERCISE = COURSE["two_circles"]
 POINTS = ("p", "a", "c", "b1", "b2")
 ANGLES = ("theta3_open", "theta4_open", "theta3_crossed", "theta4_crossed")
-EXCHANGED = {"b1": "b2", "b2": "b1", "theta3_open": "theta3_crossed", "theta4_open": "theta4_crossed",
-             "theta3_crossed": "theta3_open", "theta4_crossed": "theta4_open"}  # fmt: skip
+EXCHANGED = {
+    "b1": "b2",
+    "b2": "b1",
+    "theta3_open": "theta3_crossed",
+    "theta4_open": "theta4_crossed",
+    "theta3_crossed": "theta3_open",
+    "theta4_crossed": "theta4_open",
+}
 
 
 def compass(center, radius, other, other_radius):
@@ -70,9 +77,19 @@ def test_angles_of_one_order_with_points_of_the_other_are_told():
         assert found["b1"] == found["b2"] == "correct"
         told = [found[n] for n in ANGLES]
         # Where chance has another mistake explain one of the two angles, they count as exchanged boxes.
-        assert {"mistake:of_the_other_point"} <= set(told) <= {"mistake:of_the_other_point", "correct", "mistake:clockwise",
-                                                               "mistake:read_backwards", "mistake:bars_exchanged",
-                                                               "slip:exchanged", "follow_through"}  # fmt: skip
+        assert (
+            {"mistake:of_the_other_point"}
+            <= set(told)
+            <= {
+                "mistake:of_the_other_point",
+                "correct",
+                "mistake:clockwise",
+                "mistake:read_backwards",
+                "mistake:bars_exchanged",
+                "slip:exchanged",
+                "follow_through",
+            }
+        )
 
 
 def test_angles_alone_are_judged_in_either_order():

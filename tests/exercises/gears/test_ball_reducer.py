@@ -1,4 +1,5 @@
-"""Ball reducer: answers against exact fractions from the no-slip velocities in space, and the notes' misprints."""
+"""Ball reducer: answers against exact fractions from the no-slip velocities in space, and the notes'
+misprints."""
 
 from fractions import Fraction
 from functools import cache
@@ -190,18 +191,29 @@ def test_the_condition_at_B_is_the_one_at_A_and_no_other():
     ("answer", "verdict", "points"),
     [
         ("S0-S1 pivot, S0-S2 pivot, S0-S3 ponctuelle ×2, S1-S3 ponctuelle, S2-S3 ponctuelle", "correct", 2),
-        ("0/1 R; 0/2 R; 3/0 contact en A; 3/0 contact en B; 3/1 contact en C; 3/2 contact en D", "correct", 2),
+        (
+            "0/1 R; 0/2 R; 3/0 contact en A; 3/0 contact en B; 3/1 contact en C; 3/2 contact en D",
+            "correct",
+            2,
+        ),
         ("bâti-1 pivot, bâti-2 pivot, 3-bâti RSG, 3-bâti RSG, 3-1 RSG, 3-2 RSG", "correct", 2),
         (
             "0-1 pivot, 0-2 pivot, 0-3 ponctuelle, 1-3 ponctuelle, 2-3 ponctuelle",
             "mistake:contacts_with_the_frame_as_one",
             2 * 5 / 6,
         ),
-        ("0-1 pivot, 1-2 pivot, 0-3 ponctuelle, 0-3 ponctuelle, 1-3 ponctuelle, 2-3 ponctuelle",
-         "mistake:shafts_on_one_another", 2 * 4 / 6),
-        ("0-1 pivot, 0-2 pivot, 0-3 rotule, 0-3 ponctuelle, 1-3 ponctuelle, 2-3 ponctuelle", "partial", 2 * 5.5 / 6),
+        (
+            "0-1 pivot, 1-2 pivot, 0-3 ponctuelle, 0-3 ponctuelle, 1-3 ponctuelle, 2-3 ponctuelle",
+            "mistake:shafts_on_one_another",
+            2 * 4 / 6,
+        ),
+        (
+            "0-1 pivot, 0-2 pivot, 0-3 rotule, 0-3 ponctuelle, 1-3 ponctuelle, 2-3 ponctuelle",
+            "partial",
+            2 * 5.5 / 6,
+        ),
     ],
-)  # fmt: skip
+)
 def test_the_joint_graph_has_two_contacts_of_ball_and_frame(answer, verdict, points):
     mark = EXERCISE.variant(0, "fr", ["all"]).grade({"graph": answer})["graph"]
     assert (mark.verdict, mark.points) == (verdict, pytest.approx(points))
@@ -240,8 +252,8 @@ def space(z):
 
 
 def ball_attitudes(frames, A_3):
-    """The rotation of the ball since the start, 3 by 3 matrices: from its seam, whose upper half is drawn, and
-    from A_3, which lies on it."""
+    """The rotation of the ball since the start, 3 by 3 matrices: from its seam, whose upper half is drawn,
+    and from A_3, which lies on it."""
     found = []
     for elements, mark in zip(frames, A_3, strict=True):
         ball = max((e for e in elements if type(e) is wheel), key=lambda e: abs(e.center))

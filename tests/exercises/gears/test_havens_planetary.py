@@ -1,5 +1,5 @@
-"""Havens planetary gear: against fifty digits, by turns over a revolution, and at the places where the guide stands
-still or has no direction."""
+"""Havens planetary gear: against fifty digits, by turns over a revolution, and at the places where the guide
+stands still or has no direction."""
 
 import mpmath
 import numpy as np
@@ -15,7 +15,8 @@ MOTION = ("rA", "theta4", "omega4", "omega2", "v_A1_4", "v_slide", "v_B2_x", "v_
 
 
 def exact(d, r2, r3, b, theta1, omega1):
-    """Seventy digits, from the places of A1 and B2 alone: S2 is the line A1B2, I a point of it at rest on the pinion."""
+    """Seventy digits, from the places of A1 and B2 alone: S2 is the line A1B2, I a point of it at rest on the
+    pinion."""
     with mpmath.workdps(70):
         d, r2, r3, b, omega1 = map(mpmath.mpf, (d, r2, r3, b, omega1))
         start = mpmath.expjpi(mpmath.mpf(theta1) / 180)
@@ -57,8 +58,8 @@ def test_answers_are_those_of_the_places_in_fifty_digits(seed):
 
 @each_row(("d", "turns_of_guide"), [(30.0, 1), (90.0, 0)])
 def test_over_a_turn_wheel_and_pinion_turn_as_their_teeth_say(d, turns_of_guide):
-    """By Willis: turns of the pinion = turns of the crank + (crank - guide) r2 / r3; a guide beyond the crank only
-    swings."""
+    """By Willis: turns of the pinion = turns of the crank + (crank - guide) r2 / r3; a guide beyond the crank
+    only swings."""
     theta1 = np.arange(0.0, 360.0, 0.25)
     found = EXERCISE.solve(**{**PLAIN, "d": d, "theta1": theta1}, only=("omega4", "omega3"))
     assert found["omega4"].mean() / 6 == pytest.approx(turns_of_guide, abs=1e-12)

@@ -1,4 +1,5 @@
-"""Gear trains in exact fractions: tooth by tooth, by the table of turns, and by the balance of forces at the teeth."""
+"""Gear trains in exact fractions: tooth by tooth, by the table of turns, and by the balance of forces at the
+teeth."""
 
 from fractions import Fraction
 
@@ -12,7 +13,8 @@ COURSE = coursework.open_course()
 
 @each_row("seed", range(20))
 def test_an_ordinary_train_passes_teeth_on_one_by_one(seed):
-    """While wheel 1 passes so many teeth, each next wheel passes as many; those of one shaft make the same turns."""
+    """While wheel 1 passes so many teeth, each next wheel passes as many; those of one shaft make the same
+    turns."""
     variant = COURSE["gear_train"].variant(seed)
     found, z = variant.solution(), {k: int(v) for k, v in variant.given.items() if k.startswith("z")}
     teeth = Fraction(1000)  # past the first contact, anticlockwise

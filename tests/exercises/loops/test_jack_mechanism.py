@@ -1,4 +1,5 @@
-"""Tipping body and jack: against fifty digits of two circles that cross, at the jack's ends, and near dead points."""
+"""Tipping body and jack: against fifty digits of two circles that cross, at the jack's ends, and near dead
+points."""
 
 import mpmath
 import numpy as np

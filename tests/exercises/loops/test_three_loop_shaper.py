@@ -1,4 +1,5 @@
-"""Mechanism of three loops: against fifty digits, around its turn, and against the mixed letters of the notes."""
+"""Mechanism of three loops: against fifty digits, around its turn, and against the mixed letters of the
+notes."""
 
 import mpmath
 import numpy as np
@@ -12,9 +13,22 @@ from coursework.parsing.equations import parse_equation
 
 EXERCISE = coursework.open_course()["three_loop_shaper"]
 PLAIN = {
-    "xC": 195.0, "yC": -5.0, "xD": 110.0, "yD": -150.0, "r2": 30.0, "r3": 135.0, "r4": 145.0, "r5": 450.0,
-    "r6": 80.0, "beta": 40.0, "r7": 250.0, "d3": 240.0, "theta2": 60.0, "omega2": 8.0, "mode": "open",
-}  # fmt: skip
+    "xC": 195.0,
+    "yC": -5.0,
+    "xD": 110.0,
+    "yD": -150.0,
+    "r2": 30.0,
+    "r3": 135.0,
+    "r4": 145.0,
+    "r5": 450.0,
+    "r6": 80.0,
+    "beta": 40.0,
+    "r7": 250.0,
+    "d3": 240.0,
+    "theta2": 60.0,
+    "omega2": 8.0,
+    "mode": "open",
+}
 POSITIONS = ("theta3", "theta4", "theta5", "d5", "theta7", "x8")
 RATES = ("omega3", "omega4", "omega5", "d5_dot", "omega7", "x8_dot")
 ACCELERATIONS = ("alpha3", "alpha4", "alpha5", "d5_ddot", "alpha7", "x8_ddot")

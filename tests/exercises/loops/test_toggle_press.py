@@ -1,4 +1,5 @@
-"""Toggle press: against five bodies in fifty digits, where the toggle is nearly in line, and near the crank's dead point."""
+"""Toggle press: against five bodies in fifty digits, where the toggle is nearly in line, and near the crank's
+dead point."""
 
 import mpmath
 import numpy as np
@@ -11,20 +12,37 @@ from coursework.scenes.scenes import Scene
 
 EXERCISE = coursework.open_course()["toggle_press"]
 ASKED = (
-    "psi", "yC", "theta2", "theta3", "v_C", "mechanical_advantage", "F_5", "N_guide", "F_4", "torque",
-)  # fmt: skip
+    "psi",
+    "yC",
+    "theta2",
+    "theta3",
+    "v_C",
+    "mechanical_advantage",
+    "F_5",
+    "N_guide",
+    "F_4",
+    "torque",
+)
 FORCES = ("F_3", "F_4", "F_5", "N_guide", "torque")
 PLAIN = {
-    "r2": 50.0, "r3": 220.0, "r4": 200.0, "r5": 240.0, "yO": -150.0, "xO": -260.0, "phi": 8.0, "A_side": "left",
-    "omega2": -4.0, "F": 20000.0,
-}  # fmt: skip
+    "r2": 50.0,
+    "r3": 220.0,
+    "r4": 200.0,
+    "r5": 240.0,
+    "yO": -150.0,
+    "xO": -260.0,
+    "phi": 8.0,
+    "A_side": "left",
+    "omega2": -4.0,
+    "F": 20000.0,
+}
 
 every_seed = pytest.mark.parametrize("seed", range(20))
 
 
 class Press:
-    """The press in millimetres and fifty digits: A from the two circles about O and B, then B from those about A
-    and D as the crank turns, C on its line below B."""
+    """The press in millimetres and fifty digits: A from the two circles about O and B, then B from those
+    about A and D as the crank turns, C on its line below B."""
 
     def __init__(self, given):
         g = {n: v if n == "A_side" else mpmath.mpf(v) for n, v in given.items()}
@@ -53,8 +71,9 @@ class Press:
 def five_bodies(press):
     """Forces and moments of crank, coupler, upper bar, lower bar and ram: a linear system.
 
-    Unknown, two components each: of the frame on the crank at O, crank on coupler at A, coupler on upper bar and lower bar
-    on upper bar at B, frame on upper bar at D, ram on lower bar at C; then the guide's force and the torque.
+    Unknown, two components each: of the frame on the crank at O, crank on coupler at A, coupler on upper bar
+    and lower bar on upper bar at B, frame on upper bar at D, ram on lower bar at C; then the guide's force
+    and the torque.
     """
     zero = mpmath.mpf(0)
     O, A, B, C, F = press.O, press.A(zero), press.B(zero), press.C(zero), press.given["F"]

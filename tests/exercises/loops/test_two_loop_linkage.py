@@ -1,4 +1,5 @@
-"""Linkage of two loops: against fifty digits, against Newton's method on both loops, and the misprint of the notes."""
+"""Linkage of two loops: against fifty digits, against Newton's method on both loops, and the misprint of the
+notes."""
 
 import mpmath
 import numpy as np
@@ -12,16 +13,30 @@ from coursework.parsing.equations import parse_equation
 
 EXERCISE = coursework.open_course()["two_loop_linkage"]
 PLAIN = {
-    "xC": 200.0, "yC": -10.0, "xF": 390.0, "yF": -20.0, "r2": 35.0, "r3": 145.0, "r4": 140.0, "r5": 65.0,
-    "beta": -65.0, "r6": 155.0, "r7": 105.0, "theta2": 60.0, "omega2": 8.0, "mode_1": "open", "mode_2": "open",
-}  # fmt: skip
+    "xC": 200.0,
+    "yC": -10.0,
+    "xF": 390.0,
+    "yF": -20.0,
+    "r2": 35.0,
+    "r3": 145.0,
+    "r4": 140.0,
+    "r5": 65.0,
+    "beta": -65.0,
+    "r6": 155.0,
+    "r7": 105.0,
+    "theta2": 60.0,
+    "omega2": 8.0,
+    "mode_1": "open",
+    "mode_2": "open",
+}
 ANGLES = ("theta3", "theta4", "theta6", "theta7")
 RATES = ("omega3", "omega4", "omega6", "omega7")
 ACCELERATIONS = ("alpha3", "alpha4", "alpha6", "alpha7")
 
 
 def exact(given):
-    """Fifty digits: each pin by the angle at the pin before it, rates by differences of the positions in time."""
+    """Fifty digits: each pin by the angle at the pin before it, rates by differences of the positions in
+    time."""
     with mpmath.workdps(50):
         lengths = {n: mpmath.mpf(v) for n, v in given.items() if not n.startswith("mode")}
         C, F = mpmath.mpc(lengths["xC"], lengths["yC"]), mpmath.mpc(lengths["xF"], lengths["yF"])
@@ -177,13 +192,28 @@ def test_the_outer_loop_is_the_sum_of_the_two_others(seed):
 @each_row(
     ("text", "verdict"),
     [
-        ("r2*cos(theta2) + r3*cos(theta3) - r4*cos(theta4) + r5*cos(theta4+beta) + r6*cos(theta6) - xF - r7*cos(theta7) = 0", "correct"),
-        ("xF + r7*cos(theta7) - r6*cos(theta6) = r2*cos(theta2) + r3*cos(theta3) - r4*cos(theta4) + r5*cos(theta4 + beta)", "correct"),
-        ("r2*cos(theta2) + r3*cos(theta3) + r5*cos(theta4 + beta) + r6*cos(theta6) = xF + r7*cos(theta7)", "mistake:plate_side_CB_forgotten"),
-        ("r2*cos(theta2) + r3*cos(theta3) + r4*cos(theta4) + r5*cos(theta4 + beta) + r6*cos(theta6) = xF + r7*cos(theta7)", "slip:link_sign"),
+        (
+            "r2*cos(theta2) + r3*cos(theta3) - r4*cos(theta4) + r5*cos(theta4+beta) + r6*cos(theta6) - "
+            "xF - r7*cos(theta7) = 0",
+            "correct",
+        ),
+        (
+            "xF + r7*cos(theta7) - r6*cos(theta6) = r2*cos(theta2) + r3*cos(theta3) - r4*cos(theta4) + "
+            "r5*cos(theta4 + beta)",
+            "correct",
+        ),
+        (
+            "r2*cos(theta2) + r3*cos(theta3) + r5*cos(theta4 + beta) + r6*cos(theta6) = xF + r7*cos(theta7)",
+            "mistake:plate_side_CB_forgotten",
+        ),
+        (
+            "r2*cos(theta2) + r3*cos(theta3) + r4*cos(theta4) + r5*cos(theta4 + beta) + r6*cos(theta6) "
+            "= xF + r7*cos(theta7)",
+            "slip:link_sign",
+        ),
         ("r2*cos(theta2) + r3*cos(theta3) = xC + r4*cos(theta4)", "slip:other_loop"),
     ],
-)  # fmt: skip
+)
 def test_the_equation_of_the_outer_loop_is_judged_in_any_form(text, verdict):
     assert EXERCISE.variant(1).grade({"loop_3_x": text})["loop_3_x"].verdict == verdict
 

@@ -1,4 +1,5 @@
-"""Crank and slotted lever on paper: two drawings as a student makes them, the second from the speeds read off the first."""
+"""Crank and slotted lever on paper: two drawings as a student makes them, the second from the speeds read off
+the first."""
 
 import cmath
 import math
@@ -116,7 +117,8 @@ def test_coriolis_on_the_wrong_side_is_told_and_costs_one_point_of_the_drawing()
 
 
 def test_accelerations_from_ones_own_wrong_velocities_follow():
-    """D taken for P on the first drawing: the rod's rate is wrong, and the second drawing right from there."""
+    """D taken for P on the first drawing: the rod's rate is wrong, and the second drawing right from
+    there."""
     chance, told_so = random.Random(6), 0
     for variant in EXERCISE.variants(range(20)):
         found = graded(variant, chance, ratio_of_image=1.0)
@@ -157,7 +159,8 @@ def test_velocity_and_time_ratio_are_those_of_the_computed_shaper(seed):
 
 
 def test_the_data_of_the_notes_can_be_drawn():
-    """Crank 105, lever 420, rod 165 at 9.42 rad/s: every condition of a variant holds, at the height and frame of this layout."""
+    """Crank 105, lever 420, rod 165 at 9.42 rad/s: every condition of a variant holds, at the height and
+    frame of this layout."""
     given = {"r1": 210.0, "r2": 105.0, "r4": 420.0, "r5": 165.0, "h": 400.0, "theta2": 30.0, "omega2": 9.42}
     found = EXERCISE.solve(**given)
     other = COURSE["quick_return_shaper"].solve(**given, only=("v_C", "Q"))

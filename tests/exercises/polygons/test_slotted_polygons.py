@@ -1,4 +1,5 @@
-"""Drawn polygons of a slotted mechanism: as a student draws them, against the computed motion, and the Coriolis side."""
+"""Drawn polygons of a slotted mechanism: as a student draws them, against the computed motion, and the
+Coriolis side."""
 
 import cmath
 import math

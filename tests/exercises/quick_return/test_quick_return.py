@@ -207,7 +207,8 @@ def test_a_turn_that_does_not_exist_has_no_stroke_while_the_instant_has_its_answ
 
 
 def test_a_crank_stopped_between_two_samples_does_not_turn():
-    """r1 + r2 exceeds r3 + r4 by a ten-millionth of a millimetre: the crank misses only a sliver of its turn."""
+    """r1 + r2 exceeds r3 + r4 by a ten-millionth of a millimetre: the crank misses only a sliver of its
+    turn."""
     r2 = np.array([140.0 + 1e-7, 139.9])
     row = EXERCISE.solve(**{**PLAIN, "r2": r2}, only=("stroke", "alpha"))
     assert np.isnan(row["stroke"]).tolist() == np.isnan(row["alpha"]).tolist() == [True, False]

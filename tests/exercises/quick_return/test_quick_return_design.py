@@ -13,7 +13,8 @@ EXERCISE = coursework.open_course()["quick_return_design"]
 
 
 def simulated(r2, r3, e, count=400_001):
-    """Stroke, crank arc from the far end to the near one (anticlockwise), largest inclination; mm, degrees."""
+    """Stroke, crank arc from the far end to the near one (anticlockwise), largest inclination; mm,
+    degrees."""
     theta = np.linspace(0, 2 * np.pi, count)
     x = r2 * np.cos(theta) + np.sqrt(r3**2 - (e - r2 * np.sin(theta)) ** 2)
     far, near = int(np.argmax(x)), int(np.argmin(x))
@@ -22,7 +23,8 @@ def simulated(r2, r3, e, count=400_001):
 
 
 def through_a_crank(stroke, Q, r2):
-    """Rod and offset that go with a crank: O on the arc that sees the stroke, its distances differing by 2 r2."""
+    """Rod and offset that go with a crank: O on the arc that sees the stroke, its distances differing by 2
+    r2."""
     from scipy.optimize import brentq
 
     angle = np.pi * (Q - 1) / (Q + 1)

@@ -14,7 +14,8 @@ PLAIN = {"r2": 50.0, "r3": 140.0, "e": 35.0, "theta2": 40.0, "omega2": 6.0}
 
 
 def exact(r2, r3, e, theta2, omega2):
-    """Fifty digits: the piston on its line by |AC| = r3, its velocity by A's rigid rod, dead centres on circles."""
+    """Fifty digits: the piston on its line by |AC| = r3, its velocity by A's rigid rod, dead centres on
+    circles."""
     with mpmath.workdps(50):
         r2, r3, e, omega2 = map(mpmath.mpf, (r2, r3, e, omega2))
         A = r2 * mpmath.expjpi(mpmath.mpf(theta2) / 180)

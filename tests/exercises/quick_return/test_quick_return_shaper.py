@@ -14,7 +14,8 @@ PLAIN = {"r1": 250.0, "r2": 110.0, "r4": 450.0, "r5": 200.0, "h": 430.0, "theta2
 
 
 def exact(r1, r2, r4, r5, h, theta2, omega2):
-    """Fifty digits: C from the circle about P; the velocity by differences; the ends by the tangents from O4."""
+    """Fifty digits: C from the circle about P; the velocity by differences; the ends by the tangents from
+    O4."""
     with mpmath.workdps(50):
         r1, r2, r4, r5, h, omega2 = map(mpmath.mpf, (r1, r2, r4, r5, h, omega2))
         O2, start = mpmath.mpc(0, r1), mpmath.mpf(theta2) * mpmath.pi / 180

@@ -1,4 +1,5 @@
-"""Whitworth's quick return: against fifty digits, over a swept turn, and where the guide does not turn fully."""
+"""Whitworth's quick return: against fifty digits, over a swept turn, and where the guide does not turn
+fully."""
 
 import mpmath
 import numpy as np
@@ -14,7 +15,8 @@ PLAIN = {"r1": 60.0, "r2": 110.0, "r4": 80.0, "r5": 300.0, "h": 50.0, "theta2": 
 
 
 def exact(r1, r2, r4, r5, h, theta2, omega2):
-    """Fifty digits: points by intersecting half-lines, circles and the line; the velocity by differences in time."""
+    """Fifty digits: points by intersecting half-lines, circles and the line; the velocity by differences in
+    time."""
     with mpmath.workdps(50):
         r1, r2, r4, r5, h, omega2 = map(mpmath.mpf, (r1, r2, r4, r5, h, omega2))
         O2, start = mpmath.mpc(0, r1), mpmath.mpf(theta2) * mpmath.pi / 180
@@ -72,7 +74,8 @@ def test_the_guide_keeps_its_digits_where_the_block_passes_its_pivot(theta2):
 
 
 def test_the_guide_turns_at_the_crank_s_mean_rate():
-    """Its rate over a turn, sampled evenly, averages to that of the crank: spectrally exact for a smooth period."""
+    """Its rate over a turn, sampled evenly, averages to that of the crank: spectrally exact for a smooth
+    period."""
     theta2 = np.arange(720) / 2
     omega4 = EXERCISE.solve(**{**PLAIN, "theta2": theta2}, only="omega4")["omega4"]
     assert omega4.mean() == pytest.approx(6.0, rel=1e-13)

@@ -1,4 +1,5 @@
-"""Torque of a shaper: against powers and areas in fifty digits, where the guide hardly swings, and where it has no two crossings."""
+"""Torque of a shaper: against powers and areas in fifty digits, where the guide hardly swings, and where it
+has no two crossings."""
 
 import mpmath
 import numpy as np
@@ -14,9 +15,16 @@ EXERCISE = coursework.open_course()["shaper_torque"]
 ASKED = tuple(part.quantity for part in EXERCISE.spec.parts)
 OF_THE_TURN = ("work", "mean_torque", "power", "theta_rise", "theta_fall", "excess", "J")
 PLAIN = {
-    "r1": 250.0, "r2": 110.0, "r4": 450.0, "r5": 200.0, "h": 430.0, "theta2": 25.0, "omega2": 6.0, "F": 900.0,
+    "r1": 250.0,
+    "r2": 110.0,
+    "r4": 450.0,
+    "r5": 200.0,
+    "h": 430.0,
+    "theta2": 25.0,
+    "omega2": 6.0,
+    "F": 900.0,
     "delta": 0.05,
-}  # fmt: skip
+}
 
 every_seed = pytest.mark.parametrize("seed", sampled(range(20), range(2)))
 
@@ -31,7 +39,8 @@ def zero(function, low, high):
 
 
 def exact(r1, r2, r4, r5, h, theta2, omega2, F, delta):
-    """Fifty digits: C from the circle about P, its velocity by differences, what the flywheel gives as an area."""
+    """Fifty digits: C from the circle about P, its velocity by differences, what the flywheel gives as an
+    area."""
     with mpmath.workdps(50):
         r1, r2, r4, r5, h, omega2, F, delta = map(mpmath.mpf, (r1, r2, r4, r5, h, omega2, F, delta))
         start, swing = mpmath.mpf(theta2) * mpmath.pi / 180, mpmath.acos(mpmath.sqrt(r1**2 - r2**2) / r1)

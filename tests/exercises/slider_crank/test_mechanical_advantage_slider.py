@@ -1,4 +1,5 @@
-"""Mechanical advantage of a slider-crank: against fifty digits, the torque of the loaded scene, and where it ends."""
+"""Mechanical advantage of a slider-crank: against fifty digits, the torque of the loaded scene, and where it
+ends."""
 
 import mpmath
 import numpy as np

@@ -1,4 +1,5 @@
-"""Shaking force at fifty digits: momentum of the real rod, with its centre of mass on its way, differentiated twice."""
+"""Shaking force at fifty digits: momentum of the real rod, with its centre of mass on its way, differentiated
+twice."""
 
 import mpmath
 from tables import each_row

@@ -122,7 +122,8 @@ def test_the_drawing_is_asked_of_a_crank_at_constant_rate_only():
 
 @each_row("gap", ["1e-2", "1e-4", "1e-6", "1e-8"])
 def test_accelerations_of_a_rod_as_long_as_its_crank_keep_their_digits(gap):
-    """x = 2 r cos theta there: the rod is the crank's mirror image, and its acceleration that of the crank."""
+    """x = 2 r cos theta there: the rod is the crank's mirror image, and its acceleration that of the
+    crank."""
     theta = float(90 - mpmath.mpf(gap))
     found = EXERCISE.solve(r2=70, r3=70, e=0, theta2=theta, omega2=10, alpha2=3, only=("alpha3", "r1_ddot"))
     with mpmath.workdps(50):
@@ -148,7 +149,8 @@ def test_a_rod_that_does_not_reach_its_line_is_said_with_the_gap():
 
 
 def test_misprint_of_the_notes_turns_the_piston_round():
-    """Upright crank, anticlockwise: the piston goes left at the speed of A; the printed formula sends it right."""
+    """Upright crank, anticlockwise: the piston goes left at the speed of A; the printed formula sends it
+    right."""
     given = {"r2": 30.0, "r3": 50.0, "e": 0.0, "theta2": 90.0, "omega2": 8.0, "alpha2": 0.0}
     wrong = EXERCISE.solution.mistaken("notes_piston_sign").evaluate(("r1_dot",), given)["r1_dot"]
     assert EXERCISE.solve(**given, only="r1_dot")["r1_dot"] == -240

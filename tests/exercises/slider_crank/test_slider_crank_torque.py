@@ -1,4 +1,5 @@
-"""Torque of a slider-crank, against energies in fifty digits, against a linear system, and at the edge of jamming."""
+"""Torque of a slider-crank, against energies in fifty digits, against a linear system, and at the edge of
+jamming."""
 
 import mpmath
 import numpy as np
@@ -74,8 +75,8 @@ def test_without_friction_the_drive_and_the_load_supply_what_the_energy_gains(se
 def bodies(given, f):
     """Newton and Euler for crank, rod and piston, each about its own centre of mass: a linear system.
 
-    Unknown: the forces at O (frame on crank), A (crank on rod), B (rod on piston), N_guide and the torque. With
-    friction, one system for each side of the guide; the consistent ones are returned.
+    Unknown: the forces at O (frame on crank), A (crank on rod), B (rod on piston), N_guide and the torque.
+    With friction, one system for each side of the guide; the consistent ones are returned.
     """
     with mpmath.workdps(40):
         motion = Motion(given)

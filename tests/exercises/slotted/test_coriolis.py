@@ -12,7 +12,8 @@ EXERCISE = coursework.open_course()["coriolis"]
 
 
 def exact(omega, r_dot, theta):
-    """A block that starts at the pivot has no other acceleration than that of Coriolis: fifty digits of it."""
+    """A block that starts at the pivot has no other acceleration than that of Coriolis: fifty digits of
+    it."""
     with mpmath.workdps(50):
 
         def place(time):

@@ -1,4 +1,5 @@
-"""Curved slot: the pin seen from the lever itself in fifty digits, the slot that straightens, and its two ends."""
+"""Curved slot: the pin seen from the lever itself in fifty digits, the slot that straightens, and its two
+ends."""
 
 import mpmath
 import numpy as np
@@ -100,9 +101,15 @@ def test_a_slot_of_large_radius_is_a_straight_one():
 
 def test_at_the_ends_of_its_way_the_pin_rests_in_the_slot():
     ends = EXERCISE.solve(
-        r1=150, r2=50, d=120, rho=130, theta2=np.array([0.0, 180.0]), omega2=3, mode="crossed",
+        r1=150,
+        r2=50,
+        d=120,
+        rho=130,
+        theta2=np.array([0.0, 180.0]),
+        omega2=3,
+        mode="crossed",
         only=("v_rel", "a_coriolis", "a_rel_n", "a_rel_t"),
-    )  # fmt: skip
+    )
     for name in ("v_rel", "a_coriolis", "a_rel_n"):
         np.testing.assert_allclose(ends[name], 0, atol=1e-10)
     assert (np.abs(ends["a_rel_t"]) > 100).all()

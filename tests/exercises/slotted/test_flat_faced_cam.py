@@ -1,5 +1,5 @@
-"""Flat-faced cam at fifty digits: the law from its six conditions, the cam as the envelope of the face, its circle through
-three points."""
+"""Flat-faced cam at fifty digits: the law from its six conditions, the cam as the envelope of the face, its
+circle through three points."""
 
 import mpmath
 import numpy as np

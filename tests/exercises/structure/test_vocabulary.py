@@ -1,4 +1,5 @@
-"""The bank of questions: complete in every language, drawn by theme, and open to a teacher who writes texts only."""
+"""The bank of questions: complete in every language, drawn by theme, and open to a teacher who writes texts
+only."""
 
 import shutil
 import tomllib
@@ -68,7 +69,8 @@ def test_the_right_case_stands_at_no_favourite_place():
 
 @each_row(("fixed", "driven", "turns"), [(40.0, 100.0, 1), (100.0, 40.0, 0)])
 def test_the_guide_of_an_inversion_turns_or_swings_as_the_bank_says(fixed, driven, turns):
-    """The crank fixed and the longer rod driven: the guide turns. The rod fixed, the shorter crank driven: it swings."""
+    """The crank fixed and the longer rod driven: the guide turns. The rod fixed, the shorter crank driven: it
+    swings."""
     assert (ANSWERS["inversion_crank"], ANSWERS["inversion_slotted"]) == ("turns", "rod")
     angles = motion(fixed, driven, np.linspace(0, 2 * np.pi, 2001), order=0).guide_angle
     assert np.sum(np.angle(np.exp(1j * np.diff(angles)))) == pytest.approx(2 * np.pi * turns, abs=1e-9)

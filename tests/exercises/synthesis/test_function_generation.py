@@ -1,4 +1,5 @@
-"""Function generation: the linkage at its precision points and over its range in fifty digits, and what the judge lets pass."""
+"""Function generation: the linkage at its precision points and over its range in fifty digits, and what the
+judge lets pass."""
 
 import mpmath
 import pytest

@@ -1,4 +1,5 @@
-"""Positions of a coupler: the pole in fifty digits, and linkages that the judge lets pass because they do it."""
+"""Positions of a coupler: the pole in fifty digits, and linkages that the judge lets pass because they do
+it."""
 
 import mpmath
 import numpy as np

@@ -69,7 +69,8 @@ def white(label, a, b):
 
 
 def vectors_and_labels(figure):
-    """The vectors of a drawing at true scale, and the labels that name one, each with its place among them."""
+    """The vectors of a drawing at true scale, and the labels that name one, each with its place among
+    them."""
     at = {k: (one.p, one.p + one.v) for k, one in enumerate(figure.elements) if isinstance(one, vector)}
     placed = zip(figure._layout.labels, figure._layout.named, strict=True)
     return at, [(label, k) for label, k in placed if k in at]

@@ -1,4 +1,5 @@
-"""Drawn polygons are judged as with ruler and set-square: any pole, any scale, each vector from the student's own points."""
+"""Drawn polygons are judged as with ruler and set-square: any pole, any scale, each vector from the student's
+own points."""
 
 from __future__ import annotations
 
@@ -53,7 +54,8 @@ def test_drawings_within_the_tolerance_are_right_at_any_pole_and_scale(name, sta
 
 
 def moved(polygon, points, point, vector):
-    """A vector put in place of the one that ends at a point, and what hangs on it drawn rightly from there."""
+    """A vector put in place of the one that ends at a point, and what hangs on it drawn rightly from
+    there."""
     (side,) = polygon.hangs[point]
     old = points[point]
     return {**points, point: points[side.start] + vector(points[point] - points[side.start])}, old
@@ -155,7 +157,8 @@ def test_a_point_off_one_of_its_lines_is_a_wrong_direction_of_that_vector(name):
 @every_polygon
 @seeds(12, 40)
 def test_nothing_is_accepted_that_is_three_tolerances_off_its_vector(name, seeds):
-    """Known vectors are told from any others that end more than 2 mm away; lines from points 2 mm off them."""
+    """Known vectors are told from any others that end more than 2 mm away; lines from points 2 mm off
+    them."""
     chance = random.Random(3)
     for polygon in polygons(name, seeds):
         scale = polygon.size / 90
@@ -216,8 +219,13 @@ def test_short_vectors_have_no_direction_that_a_ruler_shows():
     assert vector_fault(1.5j, 1.5, 2.2) == ""
     assert vector_fault(3j, 3, 2) == "direction"
     assert [vector_fault(z, 50, 2) for z in (50 + 1.9j, 53, -50, 50j, 20j, 1)] == [
-        "", "length", "sense", "direction", "vector", "length",
-    ]  # fmt: skip
+        "",
+        "length",
+        "sense",
+        "direction",
+        "vector",
+        "length",
+    ]
 
 
 def test_what_cannot_be_judged_is_said():
@@ -302,8 +310,14 @@ def test_who_goes_on_rightly_from_a_wrong_first_vector_loses_it_alone(name):
 def test_feedback_names_the_vector_and_gives_no_value():
     variant = COURSE["velocity_polygon"].variant(0, "en")
     a, b = variant.key.reference["a"], variant.key.reference["b"]
-    told = variant.grade({"kv": variant.key.reference["kv"], "p": "0;0", "a": f"{a[0]};{a[1]}",
-                          "b": f"{(a - b)[0]};{(a - b)[1]}"})["b"].feedback  # fmt: skip
+    told = variant.grade(
+        {
+            "kv": variant.key.reference["kv"],
+            "p": "0;0",
+            "a": f"{a[0]};{a[1]}",
+            "b": f"{(a - b)[0]};{(a - b)[1]}",
+        }
+    )["b"].feedback
     assert "hang on the wrong points" in told
 
 
@@ -322,7 +336,8 @@ def test_a_scale_that_makes_any_drawing_small_explains_no_number(name, seeds):
 
 
 def lever():
-    """A point of a lever by two lines, another of the same lever by proportion, then one more by two lines."""
+    """A point of a lever by two lines, another of the same lever by proportion, then one more by two
+    lines."""
     along = cmath.exp(1.1j)
     of_block, across = 300 * cmath.exp(2.4j), 1j * along
     of_lever = across * (of_block / across).real

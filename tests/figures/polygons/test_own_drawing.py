@@ -1,4 +1,5 @@
-"""A student's drawing stands over the right one: right vectors and wrong ones are told apart, by colour and by dash."""
+"""A student's drawing stands over the right one: right vectors and wrong ones are told apart, by colour and
+by dash."""
 
 import re
 

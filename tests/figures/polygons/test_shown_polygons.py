@@ -98,7 +98,10 @@ def test_a_solution_without_polygons_has_none():
 )
 def test_polygons_that_are_none_are_told_with_their_file(small_course, returned, said):
     solution = small_course / "solutions" / "crank_pin.py"
-    stated = f"\n\nfrom coursework.figures.polygons import Polygon, Side\n\n\ndef polygons(v):\n    return {returned}\n"
+    stated = (
+        "\n\nfrom coursework.figures.polygons import Polygon, Side\n\n\ndef polygons(v):\n    return "
+        f"{returned}\n"
+    )
     solution.write_text(solution.read_text("utf-8") + stated, "utf-8")
     with pytest.raises(BadCourse, match=rf"solutions/crank_pin\.py: .*{said}"):
         coursework.open_course(small_course)["crank_pin"].variant(1).answer_sheet()

@@ -1,6 +1,7 @@
 """Polygons as every exercise with rates states them.
 
-What an exercise states is compared with its positions, differentiated numerically: no rate of the solution is used.
+What an exercise states is compared with its positions, differentiated numerically: no rate of the solution is
+used.
 """
 
 from __future__ import annotations
@@ -12,7 +13,8 @@ from courses_polygons import COURSE, DRIVES, PLACES, constructions, every_exerci
 
 
 def test_every_exercise_that_asks_a_rate_states_its_polygons():
-    """All but those whose rates are one vector or turn about one axis, or arrows each at its own point, or torsors in space."""
+    """All but those whose rates are one vector or turn about one axis, or arrows each at its own point, or
+    torsors in space."""
     asking = {
         name
         for name in COURSE.names
@@ -68,7 +70,8 @@ def test_image_points_are_the_derivatives_of_the_positions(name):
 
 @every_exercise
 def test_ruler_and_compasses_find_every_point(name):
-    """The construction done again: known vectors laid off, lines drawn by their directions alone and crossed."""
+    """The construction done again: known vectors laid off, lines drawn by their directions alone and
+    crossed."""
     for drawn in constructions(name):
         polygon = drawn.polygon
         at, lines = {polygon.pole: 0j}, {}

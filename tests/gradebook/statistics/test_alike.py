@@ -23,11 +23,17 @@ def marks(folder, sheets):
             for part, mark in variant.grade(answers).items():
                 table.writerow(
                     {
-                        "student": student, "exercise": variant.exercise.name, "seed": variant.seed, "part": part,
-                        "answer": mark.answer, "read_as": mark.read_as, "verdict": mark.verdict,
-                        "points": mark.points, "out_of": mark.out_of,
+                        "student": student,
+                        "exercise": variant.exercise.name,
+                        "seed": variant.seed,
+                        "part": part,
+                        "answer": mark.answer,
+                        "read_as": mark.read_as,
+                        "verdict": mark.verdict,
+                        "points": mark.points,
+                        "out_of": mark.out_of,
                     }
-                )  # fmt: skip
+                )
     return folder
 
 

@@ -1,4 +1,5 @@
-"""A platform that is registered and says odd things: each launch is opened or refused in a sentence, and people stay apart."""
+"""A platform that is registered and says odd things: each launch is opened or refused in a sentence, and
+people stay apart."""
 
 import json
 import math
@@ -12,9 +13,31 @@ from tables import each_row
 from coursework.database.tables import identity
 
 ODD = (
-    None, True, 0, -1, 1.5, 10**400, math.nan, math.inf, "", " ", "x" * 5000, "\x00", "\ud800", "\u202e", "<script>alert(1)</script>", "{0.__class__}",
-    "../../x", [], ["x"] * 500, {}, {"id": {}}, {"id": "\x00<script>"}, {"x" * 500: "y"}, [[[[]]]],
-)  # fmt: skip
+    None,
+    True,
+    0,
+    -1,
+    1.5,
+    10**400,
+    math.nan,
+    math.inf,
+    "",
+    " ",
+    "x" * 5000,
+    "\x00",
+    "\ud800",
+    "\u202e",
+    "<script>alert(1)</script>",
+    "{0.__class__}",
+    "../../x",
+    [],
+    ["x"] * 500,
+    {},
+    {"id": {}},
+    {"id": "\x00<script>"},
+    {"x" * 500: "y"},
+    [[[[]]]],
+)
 
 
 def claims_of(tool):

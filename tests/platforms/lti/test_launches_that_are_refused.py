@@ -1,4 +1,5 @@
-"""A launch that is replayed, expired, forged or for somebody else is refused with a sentence, and opens nothing."""
+"""A launch that is replayed, expired, forged or for somebody else is refused with a sentence, and opens
+nothing."""
 
 import base64
 import json
@@ -128,7 +129,7 @@ TIMES = ("exp", "iat", "nbf")  #: claims that are told below in seconds ago
         ({"message_type": "LtiSubmissionReviewRequest"}, "message", 400),
         ({"version": "1.1"}, "message", 400),
     ],
-)  # fmt: skip
+)
 def test_a_token_that_says_something_else_is_refused(tool, visitor, changed, why, status):
     def sign(claims):
         for name, value in changed.items():

@@ -1,4 +1,5 @@
-"""A link of an exercise: a student's own variant, answers, feedback and points; what platforms are told, and what erasing leaves."""
+"""A link of an exercise: a student's own variant, answers, feedback and points; what platforms are told, and
+what erasing leaves."""
 
 import io
 import json

@@ -1,4 +1,5 @@
-"""What a build writes for nbgrader: cells of its schema, one notebook for a class, own notebooks, and what it refuses."""
+"""What a build writes for nbgrader: cells of its schema, one notebook for a class, own notebooks, and what it
+refuses."""
 
 from __future__ import annotations
 

@@ -1,4 +1,5 @@
-"""nbgrader's whole cycle, with nbgrader itself: what its database holds are our points, whatever students hand in."""
+"""nbgrader's whole cycle, with nbgrader itself: what its database holds are our points, whatever students
+hand in."""
 
 from __future__ import annotations
 
@@ -72,7 +73,10 @@ def forged(book, marker):
 def with_code(book, marker):
     """Cells that write a file and shadow what a marker would call."""
     book = copy.deepcopy(book)
-    evil = f"import builtins\nabs = float = max = builtins.abs = lambda *a: 0\nopen({str(marker)!r}, 'w').close()"
+    evil = (
+        f"import builtins\nabs = float = max = builtins.abs = lambda *a: 0\nopen({str(marker)!r}, "
+        "'w').close()"
+    )
     book["cells"].insert(0, code(evil, nbgrader=["no", "table"]))
     book["cells"].append(
         code(evil, nbgrader={"grade": True, "grade_id": "coursework-mine", "points": 50, "schema_version": 3})
@@ -115,7 +119,8 @@ def in_answers(book, source):
 
 @pytest.fixture(scope="module")
 def classroom(tmp_path_factory):
-    """A class that handed in, marked by nbgrader: its folder, the variant, what each answered, what nbgrader said."""
+    """A class that handed in, marked by nbgrader: its folder, the variant, what each answered, what nbgrader
+    said."""
     out = tmp_path_factory.mktemp("class")
     marker = out / "ran"
     assert run(["build", NAME, "--formats", "nbgrader", "--lang", "en", "--out", str(out)]) == 0
@@ -244,7 +249,10 @@ points = 3
 [marking]
 follow_through = 0.5
 """
-ROSTER = "student,e-mail,number\nAda Byron,ada@uni.example,101\nBen Adda,ben@uni.example,102\nCléo Ney,cleo@uni.example,103\n"
+ROSTER = (
+    "student,e-mail,number\nAda Byron,ada@uni.example,101\nBen Adda,ben@uni.example,102\nCléo "
+    "Ney,cleo@uni.example,103\n"
+)
 ORDINARY = {"ok": ("x = 1", 2.0), "no": ("x = 2", 0.0)}  #: another assignment of the course, and its points
 
 
@@ -265,7 +273,8 @@ def ordinary():
 
 @pytest.fixture(scope="module")
 def own(tmp_path_factory):
-    """A class whose students have notebooks of their own, in a course that has an ordinary assignment besides."""
+    """A class whose students have notebooks of their own, in a course that has an ordinary assignment
+    besides."""
     out = tmp_path_factory.mktemp("own")
     (out / "week3.toml").write_text(PAPER, "utf-8")
     (out / "class.csv").write_text(ROSTER, "utf-8")
@@ -398,11 +407,13 @@ def test_through_the_exchange_from_release_to_the_points(tmp_path):
 def configured(lines, folder):
     """The steps of a course whose configuration says these lines before ours."""
     code = (
-        "import json\nfrom traitlets.config import Config\nfrom coursework.nbgrader import configure\nc = Config()\n"
+        "import json\nfrom traitlets.config import Config\nfrom coursework.nbgrader import configure\n"
+        "c = Config()\n"
         "from nbgrader.preprocessors import *\n"
         f"{lines}\n"
         f"for _ in range(2): configure(c, {str(folder)!r}, course='../mine')\n"
-        "steps = {n: [one.__name__ for one in c.Autograde[n]] for n in ('sanitize_preprocessors', 'autograde_preprocessors')}\n"
+        "steps = {n: [one.__name__ for one in c.Autograde[n]] for n in ('sanitize_preprocessors', "
+        "'autograde_preprocessors')}\n"
         "steps['preprocessors'] = [one.__name__ for one in c.GenerateAssignment.preprocessors]\n"
         "print(json.dumps([steps, c.MarkAnswers.folder, c.MarkAnswers.course]))\n"
     )
@@ -419,7 +430,10 @@ def test_our_steps_stand_in_the_places_of_nbgrader_s_and_the_teacher_s_stay(tmp_
     assert not {"Execute", "SaveAutoGrades"} & set(steps["autograde_preprocessors"])
     assert "KeepAnswers" in steps["preprocessors"]
     assert "ClearSolutions" not in steps["preprocessors"]
-    own = "c.Autograde.autograde_preprocessors = [LimitOutput, Execute, SaveAutoGrades]\nc.GenerateAssignment.preprocessors.append(LimitOutput)"
+    own = (
+        "c.Autograde.autograde_preprocessors = [LimitOutput, Execute, SaveAutoGrades]\n"
+        "c.GenerateAssignment.preprocessors.append(LimitOutput)"
+    )
     steps, *_ = configured(own, tmp_path)
     assert steps["autograde_preprocessors"] == ["LimitOutput", "MarkAnswers", "SaveMarks"]
     assert steps["preprocessors"][-1] == "LimitOutput"

@@ -1,4 +1,5 @@
-"""Drills of a lesson: each can be worked out again from what it gives, in three grades, and nothing of a class is in it."""
+"""Drills of a lesson: each can be worked out again from what it gives, in three grades, and nothing of a
+class is in it."""
 
 from __future__ import annotations
 
@@ -72,7 +73,10 @@ def test_every_lesson_has_sentences_to_judge_in_every_language(course):
 @pytest.fixture
 def small(small_course):
     settings = small_course / "exercises/course.toml"
-    chapters = '\n[[chapters]]\ntitle = { en = "Pins" }\n[[chapters.sections]]\nlesson = "rods"\nexercises = ["crank_pin"]\n'
+    chapters = (
+        '\n[[chapters]]\ntitle = { en = "Pins" }\n[[chapters.sections]]\nlesson = "rods"\nexercises = '
+        '["crank_pin"]\n'
+    )
     settings.write_text(settings.read_text("utf-8") + chapters, "utf-8")
     (small_course / "exercises/lessons").mkdir()
     (small_course / "exercises/lessons/rods.en.md").write_text("# Rods\n\n## 1. One\n\nA rod.\n", "utf-8")

@@ -1,4 +1,5 @@
-"""The numbers that the lessons on motion quote, and the polygons that they draw, are those of the solutions."""
+"""The numbers that the lessons on motion quote, and the polygons that they draw, are those of the
+solutions."""
 
 from __future__ import annotations
 

@@ -1,4 +1,5 @@
-"""Pages before the first chapter and after the last one, and the index: terms, words that are found, persons, machines."""
+"""Pages before the first chapter and after the last one, and the index: terms, words that are found, persons,
+machines."""
 
 from __future__ import annotations
 
@@ -84,7 +85,8 @@ def test_the_index_has_four_hundred_entries_and_references_lead_to_them(course):
     assert faults == []
 
 
-#: A word with a capital inside a sentence, or with an English genitive, is the name of a person, but for a few.
+#: A word with a capital inside a sentence, or with an English genitive, is the name of a person, but for a
+#: few.
 NAMED = re.compile(
     r"(?:(?<=[a-zéèà,;’'] )|(?<=\b[dDlL]['’]))[A-ZÉ][a-zéèçïü]{2,}\b(?!-)|\b[A-Z][a-zü]{3,}(?='s )"
 )

@@ -1,4 +1,5 @@
-"""Numbers of figures, tables, equations, examples, definitions and rules, and how paper cites what a link leads to."""
+"""Numbers of figures, tables, equations, examples, definitions and rules, and how paper cites what a link
+leads to."""
 
 from __future__ import annotations
 
@@ -116,7 +117,10 @@ A [rod](#index "rod") is rigid.
 @pytest.fixture
 def small(small_course):
     settings = small_course / "exercises/course.toml"
-    chapters = '\n[[chapters]]\ntitle = { en = "Pins" }\n[[chapters.sections]]\nlesson = "rods"\nexercises = ["crank_pin"]\n'
+    chapters = (
+        '\n[[chapters]]\ntitle = { en = "Pins" }\n[[chapters.sections]]\nlesson = "rods"\nexercises = '
+        '["crank_pin"]\n'
+    )
     settings.write_text(settings.read_text("utf-8") + chapters, "utf-8")
     (small_course / "exercises/lessons").mkdir()
     (small_course / "exercises/lessons/rods.en.md").write_text(LESSON, "utf-8")

@@ -223,21 +223,24 @@ def test_the_same_course_language_and_seed_give_the_same_bytes(small):
     assert other["pages/rods.html"] == first["pages/rods.html"]
 
 
-#: Words that lead back to another question, in a list or a drill to none; an instant or a position is that of the figure.
-#: A noun that says nothing without what it is of.
+#: Words that lead back to another question, in a list or a drill to none; an instant or a position is that of
+#: the figure. A noun that says nothing without what it is of.
 CLIPPED = re.compile(r"\b(component|coefficient|side|number|composante|membre|nombre|norme|magnitude)$", re.I)
 REFERRING = {
     "en": re.compile(
-        r"^(Its|Their|Likewise)\b|\b(same|these|those|they|them|with it|[Nn]umber of its|which it)\b|\bthat (velocity|equation|instant)\b"
+        r"^(Its|Their|Likewise)\b|\b(same|these|those|they|them|with it|[Nn]umber of its|which it)\b"
+        r"|\bthat (velocity|equation|instant)\b"
     ),
     "fr": re.compile(
-        r"^(Son|Sa|Ses|De même)\b|\b(même|ces|elles?|eux|de (?:ses|son|sa))\b|\bcette (?!position)|\bcet (?!instant)|\bauquel il\b"
+        r"^(Son|Sa|Ses|De même)\b|\b(même|ces|elles?|eux|de (?:ses|son|sa))\b|\bcette (?!position)"
+        r"|\bcet (?!instant)|\bauquel il\b"
     ),
 }
 
 
 def test_the_list_of_symbols_has_the_same_symbols_in_every_language(course):
-    """Over all exercises: a symbol that one language's first clause lacks is missing from its list. Each meaning stands alone."""
+    """Over all exercises: a symbol that one language's first clause lacks is missing from its list. Each
+    meaning stands alone."""
     listed = []
     for lang in languages():
         asked = [
@@ -460,7 +463,10 @@ def test_what_a_cell_writes_or_keeps_stays_out_of_the_folders_and_of_the_book(fo
     """A session of self-study keeps a file, which another run would read."""
     path = folder / "exercises/lessons/rods.en.md"
     study = 'study = coursework.study("crank_pin", seed=1, lang="en", course="small")'
-    writes = f"from pathlib import Path\nPath('left.txt').write_text('x')\n{study}\nstudy.check({{'x': '1 mm'}})\nx = 42"
+    writes = (
+        f"from pathlib import Path\nPath('left.txt').write_text('x')\n{study}\nstudy.check({{'x': '1 "
+        f"mm'}})\nx = 42"
+    )
     path.write_text(path.read_text("utf-8").replace("x = 41 + 1", writes), "utf-8")
     before = sorted(folder.parent.iterdir())
     course = coursework.open_course(folder)
@@ -594,8 +600,8 @@ def test_a_course_without_chapters_is_bound_as_well(small_course):
 
 
 def test_pages_fit_a_telephone_and_print_what_is_folded(small):
-    """The rule for narrow screens must weigh more than the one that it takes back, ``.columns-4``; a folded answer is no gap on
-    paper."""
+    """The rule for narrow screens must weigh more than the one that it takes back, ``.columns-4``; a folded
+    answer is no gap on paper."""
     found = made(small, formats=["html"])
     narrow = re.search(
         r"@media \(max-width: 40rem\) \{(.*?\})\s*\}", found["pages/crank_pin.html"].decode(), re.DOTALL

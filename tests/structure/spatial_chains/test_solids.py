@@ -167,7 +167,7 @@ def test_a_right_handed_screw_advances_along_its_axis():
         ([joint("helical", X, O), joint("cylindrical", X, (5, 0, 0))], "helical", X, O, 4),
         ([joint("point_contact", Z, O), joint("free")], "point_contact", Z, O, 0),
     ],
-)  # fmt: skip
+)
 def test_joints_in_parallel(joints, expected, direction, point, h):
     found = in_parallel(joints)
     assert (found.equivalent.name, found.h) == (expected, h)
@@ -299,7 +299,8 @@ def test_the_mobility_jumps_where_a_four_bar_is_flat():
 
 
 def test_a_row_of_parallelograms_gains_a_freedom_each_where_it_is_flat():
-    """N rods that link N + 1 equal cranks, tip to tip: mobility 1, and N + 1 with all cranks along the rods."""
+    """N rods that link N + 1 equal cranks, tip to tip: mobility 1, and N + 1 with all cranks along the
+    rods."""
     for count in (1, 2, 4):
         for angle, m in ((0.6, 1), (0.0, count + 1)):
             tip = 30 * np.array([math.cos(angle), math.sin(angle), 0])
@@ -313,7 +314,8 @@ def test_a_row_of_parallelograms_gains_a_freedom_each_where_it_is_flat():
 
 
 def bennett(theta, a=60.0, b=100.0, alpha=0.6):
-    """A Bennett linkage from its lengths a, b, twists with sin(alpha)/a = sin(beta)/b, by Denavit and Hartenberg."""
+    """A Bennett linkage from its lengths a, b, twists with sin(alpha)/a = sin(beta)/b, by Denavit and
+    Hartenberg."""
     beta = math.asin(b * math.sin(alpha) / a)
     ratio = math.sin((beta + alpha) / 2) / math.sin((beta - alpha) / 2)
     phi = 2 * math.atan(ratio / math.tan(theta / 2))
@@ -390,7 +392,8 @@ def posed(rng, joints):
 
 
 def least_of_six(rows):
-    """How near a row at a pose comes to losing one of six freedoms: its least singular value of six, lengths in 100 mm."""
+    """How near a row at a pose comes to losing one of six freedoms: its least singular value of six, lengths
+    in 100 mm."""
     twists = []
     for one, frame, point, slides in rows:
         for letter in one.kind.rotations:

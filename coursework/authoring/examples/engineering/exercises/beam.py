@@ -1,4 +1,5 @@
-"""A beam on two supports under a load at a point and a load spread evenly: reactions, largest moment, section.
+"""A beam on two supports under a load at a point and a load spread evenly: reactions, largest moment,
+section.
 
 Lengths are in m, forces in kN: units are what this file says they are. The figure takes the same numbers.
 """

@@ -1,4 +1,5 @@
-"""A wall of two layers between a warm room and the cold: resistance, heat flow, temperature between the layers.
+"""A wall of two layers between a warm room and the cold: resistance, heat flow, temperature between the
+layers.
 
 One question is a text, which a person marks.
 """

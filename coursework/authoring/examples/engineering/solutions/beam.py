@@ -1,4 +1,5 @@
-"""Statics of a beam: two equations of equilibrium, then the shear, which vanishes where the moment is the largest."""
+"""Statics of a beam: two equations of equilibrium, then the shear, which vanishes where the moment is the
+largest."""
 
 from numpy import maximum, minimum
 
@@ -58,7 +59,8 @@ def even_load_without_moment(a, F, R_A, x_M):
 
 
 def residual(L, a, F, q, sigma, R_A, R_B, x_M, M, W):
-    """The equilibrium about the load and along the vertical, the moment from the other end, and the change of the shear's sign."""
+    """The equilibrium about the load and along the vertical, the moment from the other end, and the change of
+    the shear's sign."""
     total = F + q * L
     about_load = R_A * a - R_B * (L - a) + q * L * (L / 2 - a)
     from_B = R_B * (L - x_M) - q * (L - x_M) ** 2 / 2 - F * maximum(a - x_M, 0)
@@ -73,7 +75,8 @@ def residual(L, a, F, q, sigma, R_A, R_B, x_M, M, W):
     )
 
 
-#: By hand: under the load in the first, where the shear vanishes in the second, on its right, and in the third, on its left.
+#: By hand: under the load in the first, where the shear vanishes in the second, on its right, and in the
+#: third, on its left.
 KNOWN = (
     given(L=6, a=2, F=30, q=5, sigma=150).gives(R_A=35, R_B=25, x_M=2, M=60, W=400),
     given(L=8, a=2, F=16, q=10, sigma=200).gives(R_A=52, R_B=44, x_M=3.6, M=96.8, W=484),

@@ -51,7 +51,8 @@ def one_slope_through_both(T_i, T_e, e_1, e_2):
 
 
 def residual(A, e_1, lambda_1, e_2, lambda_2, T_i, T_e, R_th, Phi, T_12):
-    """The same flow through each layer, by Fourier's law, and the whole as the mean of conductances per length."""
+    """The same flow through each layer, by Fourier's law, and the whole as the mean of conductances per
+    length."""
     first = lambda_1 * A * (T_i - T_12) * 1e3 / e_1
     second = lambda_2 * A * (T_12 - T_e) * 1e3 / e_2
     return first / Phi - 1, second / Phi - 1, R_th * 1e3 * A / (e_1 / lambda_1 + e_2 / lambda_2) - 1

@@ -72,7 +72,8 @@ def quality_turned_over(Q):
 
 
 def residual(U, f, R, L, C, Z, I, phi, f_0, Q):
-    """Voltages in quadrature, the phase from its tangent, reactances that cancel at resonance, energy stored in a coil."""
+    """Voltages in quadrature, the phase from its tangent, reactances that cancel at resonance, energy stored
+    in a coil."""
     coil, capacitor = 2e-3 * np.pi * f * L * I, I / (2e-6 * np.pi * f * C)
     resonant = 2e-3 * np.pi * f_0 * L
     return (
@@ -85,8 +86,8 @@ def residual(U, f, R, L, C, Z, I, phi, f_0, Q):
     )
 
 
-#: By hand at 1000 rad/s, where 50 mH and 50 µF have 50 and 20 ohms; the triangles are 3, 4, 5. In the second the coil
-#: has more than the voltage of the source, and the capacitor less.
+#: By hand at 1000 rad/s, where 50 mH and 50 µF have 50 and 20 ohms; the triangles are 3, 4, 5. In the second
+#: the coil has more than the voltage of the source, and the capacitor less.
 KNOWN = (
     given(U=10, f=500 / np.pi, R=40, L=50, C=50).gives(
         Z=40 + 30j, I=0.2, phi="36.870", f_0="100.658", Q="0.7906"

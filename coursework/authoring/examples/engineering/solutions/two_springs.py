@@ -1,4 +1,5 @@
-"""Two springs: each displacement from the force that its spring carries; the energy from the work of the forces."""
+"""Two springs: each displacement from the force that its spring carries; the energy from the work of the
+forces."""
 
 from coursework.quantities.columns import matrix, vector
 from coursework.solution import given, mistake
