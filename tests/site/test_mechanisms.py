@@ -43,7 +43,8 @@ def test_from_nothing_to_a_marked_exercise(own):
     sheet = own.browser(ZOE).get("/practice/mine").headers["location"]
     variant = own.site.variant("mine", int(sheet.rpartition("/")[2]), "en")
     right = f"{variant.solution()['theta3']:.6g}"
-    checked = own.browser(ZOE).fill(sheet, {"a-theta3": right, "check": "theta3"})
+    leads_to = own.browser(ZOE).fill(sheet, {"a-theta3": right, "check": "theta3"}).headers["location"]
+    checked = own.browser(ZOE).get(leads_to)
     assert words("en")["feedback"]["verdicts"]["correct"].casefold() in checked.text.casefold()
 
 
