@@ -139,8 +139,9 @@ def with_questions(text: str, made: CompiledLinkage, chosen: Collection[str]) ->
         Questions as ``key name``: those of :func:`questions`.
 
     Returns
-    ------- The text, with a new table ``[ask]`` in the order of the one before; what no check box says, such
-      as loads, weights and single coordinates, stays.
+    -------
+    The text, with a new table ``[ask]`` in the order of the one before; what no check box says, such as
+    loads, weights and single coordinates, stays.
     """
     asked = made.linkage.ask
     able = {key: [box.name for box in boxes] for key, boxes in questions(made).items()}

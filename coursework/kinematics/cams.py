@@ -94,8 +94,9 @@ def rise(law: Any, u: Any) -> tuple[Any, Any, Any, Any]:
         Cam angle as a share of the angle of the rise; a scalar or an array.
 
     Returns
-    ------- The lift as a share of the whole rise, its first, second and third derivatives, of the broadcast
-      shape. Where a derivative jumps, at both ends it is that of the rest.
+    -------
+    The lift as a share of the whole rise, its first, second and third derivatives, of the broadcast shape.
+    Where a derivative jumps, at both ends it is that of the rest.
     """
     moving = (u > 0) & (u < 1)
     u = np.minimum(np.maximum(u, 0.0), 1.0)

@@ -84,8 +84,9 @@ class RockerSlider(NamedTuple):
         :meth:`turning_points`.
 
         Source
-        ------ The rocker swings between the directions where crank and coupler are in line; within that arc
-          the slider turns back where the rod is in line with the rocker.
+        ------
+        The rocker swings between the directions where crank and coupler are in line; within that arc the
+        slider turns back where the rod is in line with the rocker.
         """
         shape, flat, closes = self._closed_all_turn()
         with np.errstate(all="ignore"):

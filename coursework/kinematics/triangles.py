@@ -93,8 +93,9 @@ def corner_beside(first: Any, other: Any, angle: Any, third: Any) -> Any:
         Scalars only: the three sides make no triangle.
 
     Source
-    ------ Sine and cosine together: Heron's formula and the law of cosines, each as the value that the angle
-      gives and what the third side changes of it.
+    ------
+    Sine and cosine together: Heron's formula and the law of cosines, each as the value that the angle gives
+    and what the third side changes of it.
     """
     half_cos, half_sin = half_angle(angle)
     square = _square_of_third(first, other, half_sin)

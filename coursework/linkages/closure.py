@@ -74,8 +74,9 @@ def length_at(
         The other quantities that place the mechanism, scalars.
 
     Returns
-    ------- The length, the shortest if there are several; NaN where the body does not come to the angle
-      between the limits.
+    -------
+    The length, the shortest if there are several; NaN where the body does not come to the angle between the
+    limits.
     """
     graph = _graph(tuple(functions()))
 
@@ -186,9 +187,10 @@ def closure_gaps(
     Gaps over the sizes of their terms, each of the broadcast shape.
 
     Source
-    ------ Every point that bodies share is placed by the frame of each, with ``i omega`` and
-      ``i alpha - omega^2`` for its rates; a point that slides stays on its line, and leaves the guide's own
-      point by the sliding velocity and the Coriolis term.
+    ------
+    Every point that bodies share is placed by the frame of each, with ``i omega`` and ``i alpha - omega^2``
+    for its rates; a point that slides stays on its line, and leaves the guide's own point by the sliding
+    velocity and the Coriolis term.
     """
     shape = np.broadcast_shapes(*(np.shape(v) for v in values.values()))
     flat = {n: np.ravel(np.broadcast_to(v, shape)) for n, v in values.items()}
