@@ -74,9 +74,8 @@ class Told:
 
     seconds: dict[str, list[float]] = field(default_factory=lambda: defaultdict(list))
     faults: Counter = field(default_factory=Counter)
-    used: dict[str, float] = field(
-        default_factory=dict
-    )  #: seconds of processors, of the processes that answer
+    #: Seconds of processors, of the processes that answer.
+    used: dict[str, float] = field(default_factory=dict)
     receipts: dict[str, tuple[int, dict[str, str]]] = field(default_factory=dict)
     saved: dict[tuple[int, str], str] = field(default_factory=dict)
     marked: float = float("nan")  #: seconds after the last receipt until all is marked

@@ -89,9 +89,8 @@ def main(exercise: str) -> None:
     class_ = Class(f"sqlite:///{folder}/site.db")
     rows = []
     with served(class_) as address, chromium() as browser:
-        context_of(browser, class_, address, ZOE).new_page().goto(
-            f"{address}/practice/{exercise}"
-        )  # the course is read
+        # The course is read.
+        context_of(browser, class_, address, ZOE).new_page().goto(f"{address}/practice/{exercise}")
         # Bytes that a service worker asks for are counted nowhere.
         context = context_of(browser, class_, address, ZOE, service_workers="block")
         page, found = weighed(context, f"{address}/practice/{exercise}", "page")

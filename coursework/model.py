@@ -49,9 +49,8 @@ class GivenSpec:
     default: float | str | None = None  #: value of a request that does not give it
     positive: bool = False
     nonzero: bool = False
-    shown: bool | tuple[str, ...] = (
-        True  #: whether the sheet lists it among the data, or the parts it is listed with
-    )
+    #: Whether the sheet lists it among the data, or the parts it is listed with.
+    shown: bool | tuple[str, ...] = True
 
     @property
     def is_choice(self) -> bool:

@@ -14,10 +14,11 @@ from pathlib import Path
 import pytest
 from sqlalchemy import create_engine, text
 
+#: As whom the server runs where the tests run as root, which it refuses to be.
 ACCOUNTS = (
     "postgres",
     "nobody",
-)  #: as whom the server runs where the tests run as root, which it refuses to be
+)
 
 
 def programs():

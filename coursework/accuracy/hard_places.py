@@ -43,9 +43,8 @@ _MOST = 8  #: places of an exercise
 
 _SAMPLE = 400  #: random places on which margins are compared
 _LOOPS = "loops"
-_MOST_NOTED = (
-    64  #: margins of one quantity, beyond which it follows a motion: of each kind the smallest counts
-)
+#: Margins of one quantity, beyond which it follows a motion: of each kind the smallest counts.
+_MOST_NOTED = 64
 
 _Key: TypeAlias = tuple[str, str, int]  #: quantity, kind, and which of them
 Margins = dict[_Key, np.ndarray]

@@ -221,9 +221,8 @@ class EnergyIntegral:
 
         pieces = int(abs(end - start) / (self.context.pi / 4)) + 1
         points = self.context.linspace(start, end, pieces + 1)
-        return self.context.quad(
-            slowness, points, method="gauss-legendre"
-        )  # smooth: fewer points than tanh-sinh
+        # Smooth: fewer points than tanh-sinh.
+        return self.context.quad(slowness, points, method="gauss-legendre")
 
     def _radians(self, degrees: float) -> Any:
         return self.context.mpf(degrees) * self.context.pi / 180

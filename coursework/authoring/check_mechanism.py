@@ -23,9 +23,8 @@ _AGREES = 1e-7  #: of the largest rate
 _STEP = 1e-4  #: radians, of differences
 
 
-_SLOPES = (
-    np.array([[0, -1, 0, 1, 0], [0, 0, -3, 4, -1], [1, -4, 3, 0, 0]]) / 2
-)  #: a step apart, central if possible
+#: A step apart, central if possible.
+_SLOPES = np.array([[0, -1, 0, 1, 0], [0, 0, -3, 4, -1], [1, -4, 3, 0, 0]]) / 2
 
 
 def check_mechanism(drawn: Sequence[Variant], report: CheckReport) -> None:

@@ -26,17 +26,14 @@ class CheckReport:
     acceptance: float = math.nan
     conditioning: tuple[float, float] = (math.nan, math.nan)  #: median and largest, of what may be issued
     cases: dict[str, Counter[str]] = field(default_factory=dict)  #: branches that students met, by quantity
-    unproved: dict[str, str] = field(
-        default_factory=dict
-    )  #: why a step's formula proves nothing, by quantity
+    #: Why a step's formula proves nothing, by quantity.
+    unproved: dict[str, str] = field(default_factory=dict)
     unproved_units: dict[str, str] = field(default_factory=dict)  #: why a unit is not proved, by quantity
 
-    unprotected: dict[str, dict[str, float]] = field(
-        default_factory=dict
-    )  #: by quantity and kind, the share of the variants on which a usual error in its formula may go unseen
-    unmade: set[str] = field(
-        default_factory=set
-    )  #: asked numbers whose formula is not one that errors are made of
+    #: By quantity and kind, the share of the variants on which a usual error in its formula may go unseen.
+    unprotected: dict[str, dict[str, float]] = field(default_factory=dict)
+    #: Asked numbers whose formula is not one that errors are made of.
+    unmade: set[str] = field(default_factory=set)
 
     by_person: set[str] = field(default_factory=set)  #: parts that a person marks, and no check can try
 

@@ -141,9 +141,8 @@ class Lists(click.ParamType):
 
     def __init__(self, known: Callable[[], Iterable[str]], refusal: Callable[[str], str] | None = None):
         self.known = known
-        self.refusal = (
-            refusal  #: what is said of an unknown word, where more is to be said than what there is
-        )
+        #: What is said of an unknown word, where more is to be said than what there is.
+        self.refusal = refusal
 
     def convert(self, value: Any, param: Any, ctx: Any) -> tuple[str, ...]:
         if isinstance(value, tuple):

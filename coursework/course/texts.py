@@ -153,9 +153,8 @@ def _text(markdown: str, path: Path, source: str, *, formulas: bool) -> Rendered
         first = piece.split("\n")[0]
         lines = path.read_text(_ENCODING).split("\n")
         matches = [n for n, line in enumerate(lines, 1) if first in line]
-        begun = [
-            n for n, line in enumerate(lines, 1) if first[:_TELLING] in line
-        ]  # a value stands further on
+        # A value stands further on.
+        begun = [n for n, line in enumerate(lines, 1) if first[:_TELLING] in line]
         line_number = matches[0] if matches else begun[0] if len(begun) == 1 else None
         return f"{source}, line {line_number}" if line_number else source
 

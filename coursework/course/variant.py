@@ -46,9 +46,8 @@ class Variant:
         self.chosen = parts  #: the parts to ask, where they are not the usual ones
         self.given: Mapping[str, Any] = MappingProxyType(dict(given))  #: canonical units, as printed
         self._issued = issued  #: the record of an older version
-        self._orders = (
-            orders  #: of choices by part, as they were recorded; None where nothing was: they are the seed's
-        )
+        #: Of choices by part, as they were recorded; None where nothing was: they are the seed's.
+        self._orders = orders
         self._found: dict[str, Any] = {}
         self._key: Key | None = None
 

@@ -16,9 +16,8 @@ from coursework.errors import BadInput, nearest
 from coursework.issuing.issued import CODE, ISSUED_FORMAT, SECRET, Issued, codes_shown, secret_of
 from coursework.issuing.roster import Student
 
-_Place = tuple[
-    str, int, str, str, int
-]  #: student, sitting, exercise, seed, and a count of equal items without a student
+#: Student, sitting, exercise, seed, and a count of equal items without a student.
+_Place = tuple[str, int, str, str, int]
 
 
 # ---------------------------------------------------------------------- finding

@@ -333,9 +333,8 @@ class ClassState:
     @cached_property
     def rejected(self) -> tuple[UnplacedRow, ...]:
         """Rows that could not be placed, each with its placing by a person."""
-        near = cache(
-            partial(near_name, self.issued)
-        )  # slow in a large class: of the rows that are shown alone
+        # Slow in a large class: of the rows that are shown alone.
+        near = cache(partial(near_name, self.issued))
         return tuple(UnplacedRow(*one, self.placings.get(one[0]), near) for one in self.unplaced)
 
     @property

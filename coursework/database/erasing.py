@@ -34,13 +34,13 @@ from coursework.database.tables import (
 )
 
 STRUCK = "…"  #: replaces a name
-_SHORTEST = (
-    3  #: characters of what is struck out of the texts of others: a shorter word says of nobody who it is
-)
+#: Characters of what is struck out of the texts of others: a shorter word says of nobody who it is.
+_SHORTEST = 3
+#: What an assignment says, where a name of letters alone is more likely another word.
 _HEADS = (
     "stated",
     "asked",
-)  #: what an assignment says, where a name of letters alone is more likely another word
+)
 
 #: Texts that may name a person; answers of others are not among them.
 TELLING: tuple[tuple[Table, tuple[str, ...]], ...] = (

@@ -20,9 +20,8 @@ from coursework.messages import Message
 from coursework.system.sqlite_files import scrub
 
 _READS = "coursework_reads"  #: said of a connection that writes nothing
-CONNECTIONS = (
-    20  #: of one process at most: four of them leave a PostgreSQL of the usual settings, 100, some for others
-)
+#: Of one process at most: four of them leave a PostgreSQL of the usual settings, 100, some for others.
+CONNECTIONS = 20
 _PATIENCE = 30  #: seconds for which a write waits for another
 
 

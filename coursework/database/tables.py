@@ -258,9 +258,8 @@ answer = Table(
     Column("source", SafeText, nullable=False),
     Column("warning", SafeText, nullable=False, default=""),
     Column("lang", SafeText, nullable=False, default=""),
-    Column(
-        "origin", Json
-    ),  #: statements of a platform about it (:class:`coursework.gradebook.rows.RowOrigin`)
+    #: Statements of a platform about it (:class:`coursework.gradebook.rows.RowOrigin`).
+    Column("origin", Json),
 )
 
 #: Drawing of an exercise, as it was when the answers were submitted
@@ -441,9 +440,8 @@ draft = Table(
     METADATA,
     _key(),
     _of("person"),
-    Column(
-        "sheet", SafeText, nullable=False
-    ),  #: ``practice/EXERCISE/SEED``, ``assignment/ID``, ``lessons`` or ``lessons/NAME``
+    #: ``practice/EXERCISE/SEED``, ``assignment/ID``, ``lessons`` or ``lessons/NAME``.
+    Column("sheet", SafeText, nullable=False),
     Column("box", SafeText, nullable=False),  #: a part; of a paper ``EXERCISE/PART``
     Column("text", SafeText, nullable=False),
     Column("version", Integer, nullable=False),  #: counts the changes

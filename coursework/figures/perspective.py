@@ -28,16 +28,18 @@ _APART = 9.0  #: what is seen so far apart is told apart well, mm on paper
 _SCALE = 1.0  #: at most
 _WIDE = 110.0  #: what the points may take of the paper across, mm
 _ARM = 6.0  #: of an axis to each side of its point, mm on paper
+#: The base, and where it stands from the middle of the left side, mm on paper.
 _BASE, _CORNER = (
     9.0,
     complex(-20, -4),
-)  #: the base, and where it stands from the middle of the left side, mm on paper
+)
+#: Half-length and radius of a tube, radius of a ball, half the side of a plate, mm on paper.
 _LONG, _RADIUS, _BALL, _PLATE = (
     3.0,
     1.5,
     1.9,
     3.2,
-)  #: half-length and radius of a tube, radius of a ball, half the side of a plate, mm on paper
+)
 _ASIDE = 5.5  #: from a point to the symbol of one of several joints there, along its axis, mm on paper
 _FEW, _SMALLER = 2, 0.75  #: more joints than a few have smaller symbols
 _UNITS = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
@@ -317,12 +319,13 @@ _DRAWN: dict[str, tuple[Shape, float]] = {
     "line_contact": (_on_line, 1.2 * _LONG),
     "point_contact": (_on_plate, 2 * _BALL),
 }
+#: Those whose symbol may stand anywhere on the axis.
 _ALONG = (
     "revolute",
     "cylindrical",
     "helical",
     "prismatic",
-)  #: those whose symbol may stand anywhere on the axis
+)
 
 
 def _unit(vector: Place) -> Place:

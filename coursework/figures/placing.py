@@ -22,9 +22,8 @@ _AIRY = 0.8  #: the white a label prefers
 _APART = 0.5  #: least white between two labels, mm
 _LEADER = 4.5  #: a label farther than this from what it names gets a thin line to it, mm
 _AT_ARC = 3.0  #: the same for an angle, from the middle of its arc, mm
-_NEARER = (
-    0.2  #: a label is nearer to its own line or point than to any other that has a label, by so much, mm
-)
+#: A label is nearer to its own line or point than to any other that has a label, by so much, mm.
+_NEARER = 0.2
 _ALOOF = 2.0  #: least white between a label with a leader and another line that has a label, mm
 _SAME = 0.05  #: points so near each other are one, mm
 _BESIDE = 1.5  #: so near a leader of a label passes no other point that has one, mm

@@ -107,20 +107,17 @@ class Gradebook:
     faults: list[str] = field(default_factory=list)  #: of what was accepted by hand, for somebody to mend
     students: dict[Sitting, Total] = field(default_factory=dict)  #: of submitted sheets
     exercises: dict[str, Total] = field(default_factory=dict)  #: of the answers received
-    blank: dict[tuple[Sitting, str], set[str]] = field(
-        default_factory=dict
-    )  #: parts by sheet; see ``unread``
+    #: Parts by sheet; see ``unread``.
+    blank: dict[tuple[Sitting, str], set[str]] = field(default_factory=dict)
     waiting: int = 0  #: answers that wait to be marked by a person
     changes: int = 0  #: marks that differ from those that were there before
-    apart: dict[str, set[str]] = field(
-        default_factory=dict
-    )  #: parts that a platform asked apart, by exercise
+    #: Parts that a platform asked apart, by exercise.
+    apart: dict[str, set[str]] = field(default_factory=dict)
     asked_apart: dict[tuple[Sitting, str], set[str]] = field(default_factory=dict)  #: the same of somebody
     complete: set[str] = field(default_factory=set)  #: exercises of which a complete variant was received
     seen: tuple[str, ...] = ()  #: what platforms wrote of what was read
-    charged: Mapping[Sitting, float] = field(
-        default_factory=dict
-    )  #: penalties of late submissions, as shares of the points
+    #: Penalties of late submissions, as shares of the points.
+    charged: Mapping[Sitting, float] = field(default_factory=dict)
     presence: Mapping[str, str] = field(default_factory=dict)  #: by student, where somebody stated it
     aside: Collection[Rejected] = ()  #: rejected rows that a person has put aside: nothing waits in them
 

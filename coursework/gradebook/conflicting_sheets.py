@@ -19,9 +19,8 @@ from coursework.messages import Message
 
 Sheet = tuple[str, str, int]  #: student, exercise and seed
 
-_OWN = re.compile(
-    r".*?\.(?:ipynb|json)(?=, |$)", re.S
-)  #: what students hand in themselves, each in a file of their own
+#: What students hand in themselves, each in a file of their own.
+_OWN = re.compile(r".*?\.(?:ipynb|json)(?=, |$)", re.S)
 _AGAIN = re.compile(r"\s*\([0-9]+\)$")  #: what browsers add to the name of a file that is there already
 
 

@@ -584,9 +584,8 @@ class _IssuedParts:
     def __init__(self, issued: Issued, students: Sequence[str]) -> None:
         self._issued, self._students = issued, students
         self._answered = frozenset(map(folded, students))
-        self._parts: dict[
-            tuple[str, str], dict[str, float]
-        ] = {}  #: points, by exercise and seed; of any seed by ""
+        #: Points, by exercise and seed; of any seed by "".
+        self._parts: dict[tuple[str, str], dict[str, float]] = {}
         for (exercise, seed), record in issued.records.items():
             points = {str(part["id"]): float(part["points"]) for part in record["parts"]}
             self._parts[exercise, str(seed)] = points

@@ -19,9 +19,8 @@ from coursework.messages import Message, as_message
 
 _LISTED = 8  #: names that a message lists
 _REMEMBERED = 10_000  #: places of rows, while the next rows are read
-SheetKey = tuple[
-    str, str, int, int
-]  #: student, exercise, seed, and the attempt where a platform tells it, else 0
+#: Student, exercise, seed, and the attempt where a platform tells it, else 0.
+SheetKey = tuple[str, str, int, int]
 
 
 @dataclass
@@ -36,9 +35,8 @@ class Sheets:
     langs: dict[SheetKey, str] = field(default_factory=dict)  #: of the sheets that tell theirs
     seen: Counter[PlatformFile] = field(default_factory=Counter)  #: what platforms wrote
     submitted: dict[SheetKey, str] = field(default_factory=dict)  #: time, if it is stated
-    apart: set[SheetKey] = field(
-        default_factory=set
-    )  #: sheets of which the platform asked only the parts received
+    #: Sheets of which the platform asked only the parts received.
+    apart: set[SheetKey] = field(default_factory=set)
 
     @property
     def count(self) -> int:

@@ -66,9 +66,8 @@ def placed_on_disk(
 
 
 _NumberedRow = tuple[int, Rejected]  #: by the number of the row
-_NumberedAnswer = tuple[
-    int, SheetKey, tuple[Any, ...]
-]  #: a plain tuple is written and read in half the time of a row
+#: A plain tuple is written and read in half the time of a row.
+_NumberedAnswer = tuple[int, SheetKey, tuple[Any, ...]]
 
 
 def _split_by_sheet(

@@ -103,9 +103,8 @@ class Assignment:
     mark: Scale | None = None
     versions: int | None = None  #: number of versions; None: a variant per student
     identity: tuple[str, ...] = ()
-    carry: tuple[str, ...] | None = (
-        None  #: columns of the roster that the summary repeats; None: all but private ones
-    )
+    #: Columns of the roster that the summary repeats; None: all but private ones.
+    carry: tuple[str, ...] | None = None
     sort: str = ""  #: the column by which a booklet is sorted; empty: as the roster
     sittings: str = "best"
     answers: str = "shown"

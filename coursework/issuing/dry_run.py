@@ -26,9 +26,8 @@ class DryRun:
     pages: tuple[int, ...]  #: of each of these
     total_pages: int  #: of all papers, estimated from these
     total_sheets: int  #: of paper, printed on both sides
-    white: Mapping[
-        int, float
-    ]  #: by page, the largest white share of its height, where it is above :data:`WHITE`
+    #: By page, the largest white share of its height, where it is above :data:`WHITE`.
+    white: Mapping[int, float]
     points: Mapping[str, tuple[float, float]]  #: by exercise, the fewest and the most
     left: Mapping[str, tuple[int, int | None]]  #: by exercise, variants used and left; None: very many
 

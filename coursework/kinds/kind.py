@@ -92,61 +92,49 @@ class Kind(ABC):
     is_exact: ClassVar[bool] = False  #: judged by identity: no tolerance
     is_text: ClassVar[bool] = False  #: words or symbols, not numbers
     is_scalar: ClassVar[bool] = False  #: one number, whole or not
-    is_number: ClassVar[bool] = (
-        False  #: one number measured: its sign, its unit may be mistaken, and it has a curve
-    )
+    #: One number measured: its sign, its unit may be mistaken, and it has a curve.
+    is_number: ClassVar[bool] = False
     turn: ClassVar[float] = 0.0  #: after which values are the same, in the part's unit; 0 for none
-    is_followed: ClassVar[bool] = (
-        False  #: a student goes on from it, and it follows from what was answered before
-    )
-    goes_on_only: ClassVar[bool] = (
-        False  #: it follows from what was answered before, and nobody goes on from it
-    )
+    #: A student goes on from it, and it follows from what was answered before.
+    is_followed: ClassVar[bool] = False
+    #: It follows from what was answered before, and nobody goes on from it.
+    goes_on_only: ClassVar[bool] = False
     has_few_values: ClassVar[bool] = False  #: so few that many mistakes lead to the same one
     disproves: ClassVar[bool] = True  #: a right answer shows that a mistake was not made that would change it
     rounds: ClassVar[bool] = True  #: rounding on the way widens its margin, which has the part's unit
     rank: ClassVar[int] = 0  #: axes of one value: 1 for a vector, 2 for a matrix
     of_largest: ClassVar[bool] = False  #: a relative tolerance is of the largest entry, and holds for each
     is_open: ClassVar[bool] = False  #: a person marks it, and the solution need not give it
-    room: ClassVar[Any] = (
-        None  #: on the sheet, of a part that states none; a part of another kind has no such room
-    )
-    field: ClassVar[str] = (
-        "number"  #: on paper that is read back: number (a row of boxes a coordinate), ticks, written, drawing
-    )
-    has_decimals: ClassVar[bool] = (
-        True  #: whether such a row has boxes behind the point, and for a power of ten
-    )
+    #: On the sheet, of a part that states none; a part of another kind has no such room.
+    room: ClassVar[Any] = None
+    #: On paper that is read back: number (a row of boxes a coordinate), ticks, written, drawing.
+    field: ClassVar[str] = "number"
+    #: Whether such a row has boxes behind the point, and for a power of ten.
+    has_decimals: ClassVar[bool] = True
     has_several_ticks: ClassVar[bool] = False  #: whether more than one box may be ticked
     lines: ClassVar[int] = 1  #: to write on there, of a part that has no room of its own
     has_rule: ClassVar[bool] = False  #: the sheet says how its points are counted
     share_stands: ClassVar[bool] = False  #: a named mistake leaves at least the :meth:`share` that is right
 
     has_symbol: ClassVar[bool] = True  #: the quantity's symbol stands before the box
-    is_called_by_symbol: ClassVar[bool] = (
-        True  #: feedback calls it so too; else by the number of the question
-    )
+    #: Feedback calls it so too; else by the number of the question.
+    is_called_by_symbol: ClassVar[bool] = True
     box: ClassVar[str] = "usual"  #: room for the answer: usual, wide, line, lines, blank, millimetre
     has_cells: ClassVar[bool] = False  #: on a page, a box for each component stands for the one line
-    columns: ClassVar[
-        tuple[str, ...]
-    ] = ()  #: letters before their units, where a question may ask in another order
-    prediction: ClassVar[str] = (
-        ""  #: how it is predicted before it is computed: quadrant, guess, size; nothing for not at all
-    )
+    #: Letters before their units, where a question may ask in another order.
+    columns: ClassVar[tuple[str, ...]] = ()
+    #: How it is predicted before it is computed: quadrant, guess, size; nothing for not at all.
+    prediction: ClassVar[str] = ""
     family: ClassVar[str] = "number"  #: in the words for a student alone whose answer cannot be read
 
     wrong: ClassVar[str] = "wrong"  #: the sentence for an answer that nothing explains
     unitless: ClassVar[str] = "wrong_unit_ratio"  #: the sentence for a unit where there is none
-    quoted: ClassVar[tuple[str, ...]] = (
-        "unknown_unit",
-    )  #: faults of which the piece that stops the reading is quoted
-    faults: ClassVar[Mapping[str, str]] = {
-        "unknown_symbol": "not_a_number"
-    }  #: faults that are told as others
-    hint: ClassVar[
-        Mapping[str, str]
-    ] = {}  #: by language, the form of an answer, where the engine's words have none
+    #: Faults of which the piece that stops the reading is quoted.
+    quoted: ClassVar[tuple[str, ...]] = ("unknown_unit",)
+    #: Faults that are told as others.
+    faults: ClassVar[Mapping[str, str]] = {"unknown_symbol": "not_a_number"}
+    #: By language, the form of an answer, where the engine's words have none.
+    hint: ClassVar[Mapping[str, str]] = {}
 
     def __init_subclass__(cls, **more: Any) -> None:
         super().__init_subclass__(**more)

@@ -103,9 +103,8 @@ def rise(law: Any, u: Any) -> tuple[Any, Any, Any, Any]:
     left = 1.0 - u
     both, odd, pi = u * left, 1.0 - 2.0 * u, np.pi + 0.0 * u
     half, turn = 180.0 * u, 360.0 * u
-    low = np.minimum(
-        u, left
-    )  # the second half of each lift is its first one, turned: there no digit is lost near the end
+    # The second half of each lift is its first one, turned: there no digit is lost near the end.
+    low = np.minimum(u, left)
     laws = {
         "parabolic": (2.0 * low**2, 4.0 * np.minimum(u, left), 4.0 * np.sign(odd), 0.0 * u),
         "harmonic": (

@@ -6,16 +6,14 @@ import re
 
 from coursework.language.numbers import NARROW_SPACE
 
-_APOSTROPHE = re.compile(
-    r"(?<=\w)'(?=[\w*$«]|\Z)"
-)  # also before italics, a formula, a quotation, the next piece
+# Also before italics, a formula, a quotation, the next piece.
+_APOSTROPHE = re.compile(r"(?<=\w)'(?=[\w*$«]|\Z)")
 _UNIT = re.compile(
     r"(?<=\d)[ \u00a0](?=%|(?:[kcmµ]?m|k?g|[kmM]?N|[kMm]?W|[kMm]?J|Hz|m?s|min|h|rad|tr|rev|rpm)"
     r"(?:[²³/·.,;:)\s]|$))"
 )
-_HIGH_MARKS = re.compile(
-    r"(?<!\s)(?<!^-)[ \u00a0](?=[;:!?»](?:\W|$))", re.MULTILINE
-)  # also at the head, where a formula stands before; never behind the dash of a list, which would be none
+# Also at the head, where a formula stands before; never behind the dash of a list, which would be none.
+_HIGH_MARKS = re.compile(r"(?<!\s)(?<!^-)[ \u00a0](?=[;:!?»](?:\W|$))", re.MULTILINE)
 _MISSING_SPACE = re.compile(r"(?<=[\w)\]])(?=[;!?»](?:\s|$))")
 _OPENING_QUOTE = re.compile(r"«[ \u00a0\u202f]?")
 

@@ -589,9 +589,8 @@ class CompiledLinkage:
         module = ModuleType(name)
         module.__file__ = file
         module._lines = _SourceLines(file, source)  # type: ignore[attr-defined]
-        exec(
-            compile(source, file, "exec"), module.__dict__
-        )  # written from names and expressions that were read
+        # Written from names and expressions that were read.
+        exec(compile(source, file, "exec"), module.__dict__)
         return module
 
 

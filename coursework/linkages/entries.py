@@ -166,9 +166,8 @@ class LinkageFile:
     required: tuple[str, ...]  #: conditions on the draws
     drive: DriverEntry
     name: str
-    known: tuple[
-        tuple[Mapping[str, float | str], Mapping[str, tuple[str, str]]], ...
-    ] = ()  #: given values, then results as text and unit
+    #: Given values, then results as text and unit.
+    known: tuple[tuple[Mapping[str, float | str], Mapping[str, tuple[str, str]]], ...] = ()
 
     def refused(self, at: Sequence[str | int], template: str, /, **values: Any) -> BadInput:
         """Return the error of a key, with file and line."""

@@ -26,9 +26,8 @@ _EQUALS = re.compile(r"(?<![<>=!])=(?!=)")  #: alone, which compares nothing
 _LITERAL = re.compile(
     r"(?<![\w.])(\d+(?:\.\d+)?(?:[eE][+-]?\d+)?)\s*([A-Za-zµ°][A-Za-z°²³]*(?:[*/^][A-Za-z0-9²³]+)*)(?!\w)"
 )
-_SHARE = re.compile(
-    r"[*/^][A-Za-z0-9²³]+\Z"
-)  #: the last factor of what may be a unit, or a unit and a quantity
+#: The last factor of what may be a unit, or a unit and a quantity.
+_SHARE = re.compile(r"[*/^][A-Za-z0-9²³]+\Z")
 _OPERATORS: Mapping[type, str] = {ast.Add: "+", ast.Sub: "-", ast.Mult: "*", ast.Div: "/", ast.Pow: "**"}
 _ARITHMETIC: Mapping[type, Callable[[float, float], float]] = {
     ast.Add: operator.add,
@@ -154,6 +153,7 @@ def amount(text: object, unit: str) -> float:
 
 CANONICAL = ("mm", "deg", "rad/s", "rad/s^2", "mm/s", "mm/s^2", "N*m", "N", "kg", "kg*m^2", "s", "1")
 PLAIN = parse_unit("1")
+#: A unit of each dimension, as messages name it.
 _BASES = (
     "mm",
     "kg",
@@ -165,7 +165,7 @@ _BASES = (
     "mol",
     "cd",
     "dB",
-)  #: a unit of each dimension, as messages name it
+)
 
 
 def canonical(unit: Unit) -> str:

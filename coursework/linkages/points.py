@@ -163,18 +163,16 @@ class PointWriter:
         self.groups, self.rank = groups_of(linkage)
         self.quantities: dict[str, Quantity] = {}
         self.turns: dict[str, str] = {GROUND: "0"}
-        self.reference: dict[
-            str, str
-        ] = {}  #: a point of each body whose motion is known before the body's other points
+        #: A point of each body whose motion is known before the body's other points.
+        self.reference: dict[str, str] = {}
         self.modes: dict[str, AssemblyEntry] = {}  #: by point, where a group has two ways to assemble
         self.order = [GROUND]
         self.mistakes: list[UsualMistake] = []
         self.sines: dict[str, str] = {}  #: by inner joint, the code that vanishes at its dead points
         self.loops: dict[str, Chain] = {}  #: of the larger groups
         self.constants: dict[str, str] = {}  #: of the module, by name
-        self.followed: dict[
-            str, tuple[str, ...]
-        ] = {}  #: by larger group, the quantities that it computes along the driver's way
+        #: By larger group, the quantities that it computes along the driver's way.
+        self.followed: dict[str, tuple[str, ...]] = {}
         self._name_turns()
         self._place_driver()
 

@@ -29,9 +29,8 @@ class TableReader(TomlReader):
         super().__init__(path, source)
         self.table = table
         self.units: dict[str, str] = {}
-        self.constants: dict[
-            str, GivenEntry
-        ] = {}  #: numbers that stand in places and loads, by the names that they get
+        #: Numbers that stand in places and loads, by the names that they get.
+        self.constants: dict[str, GivenEntry] = {}
 
     # -------------------------------------------------------------------- pieces
 

@@ -69,9 +69,8 @@ class Read(NamedTuple):
     end: str
     value: Callable[[complex], float]  #: function of the vector, in the polygon's unit
     gain: float  #: what a unit of its length is worth
-    wrong: Mapping[str, tuple[str, str, float]] = MappingProxyType(
-        {}
-    )  #: by mistake: the ends of the vector that is taken instead, and its gain
+    #: By mistake: the ends of the vector that is taken instead, and its gain.
+    wrong: Mapping[str, tuple[str, str, float]] = MappingProxyType({})
     sense: str = "value_sense"  #: the mistake of its sign
 
 
@@ -195,9 +194,8 @@ def _of_point(point: str, drawing: JudgedDrawing, requested: DrawingParts) -> Ju
     return _of_fault(point, drawing, requested)
 
 
-_ATTEMPT = (
-    3.0  #: factor between the length of a vector and that of the right one, which was drawn all the same
-)
+#: Factor between the length of a vector and that of the right one, which was drawn all the same.
+_ATTEMPT = 3.0
 
 
 def _is_drawn_from(pole: str, point: str, drawing: JudgedDrawing) -> bool:

@@ -38,9 +38,8 @@ from coursework.parsing.reading import Reading
 if TYPE_CHECKING:
     from coursework.course.variant import Variant
 
-_NEAR = (
-    0.02  #: of the largest number of an answer, within which one that a judge takes is the reference's own
-)
+#: Of the largest number of an answer, within which one that a judge takes is the reference's own.
+_NEAR = 0.02
 
 
 def mark(variant: Variant, answers: Mapping[str, Any], known: Mapping[str, str] | None = None) -> SheetMarks:

@@ -63,9 +63,8 @@ _UNDRAWN = re.compile(
     "\U0001d400-\U0001d454\U0001d456-\U0001d49c\U0001d49e-\U0001d49f\U0001d4a2\U0001d4a5-\U0001d4a6\U0001d4a9-\U0001d4ac"
     "\U0001d4ae-\U0001d4b9\n\t]"
 )
-_ABOVE = re.compile(
-    "[\u20d0-\u20f0]"
-)  #: signs above a letter, which formulas have; no font of the text has them
+#: Signs above a letter, which formulas have; no font of the text has them.
+_ABOVE = re.compile("[\u20d0-\u20f0]")
 #: A vector's letter and its arrow: one font draws the two of them.
 _VECTOR = re.compile("([A-Za-zΑ-Ωα-ω0-9]\u20d7)")
 _VECTOR_FONT = "New Computer Modern Math"

@@ -15,9 +15,8 @@ import numpy as np
 from coursework.mechanics.rates import Stance, solved
 from coursework.mechanics.wrenches import BodyWrenches
 
-PIECE = (
-    4096  #: instants whose equations are set up and solved together: fewer calls, and matrices of some 10 MB
-)
+#: Instants whose equations are set up and solved together: fewer calls, and matrices of some 10 MB.
+PIECE = 4096
 
 
 class Equilibrium:

@@ -16,9 +16,8 @@ from coursework.errors import BadCourse, nearest
 
 GROUND = "ground"
 
-Place: TypeAlias = (
-    str | complex | Callable[..., Any]
-)  #: what gives a number: a quantity, a number, a function
+#: What gives a number: a quantity, a number, a function.
+Place: TypeAlias = str | complex | Callable[..., Any]
 
 
 @dataclass(frozen=True)

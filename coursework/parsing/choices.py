@@ -70,9 +70,8 @@ _LETTER_IN_REMARK = re.compile(
     re.I | re.S,
 )
 _IN_BRACKETS = re.compile(r"\(([^()]+)\)\s*\.?")
-_CALL = re.compile(
-    r"[a-z]\(\s*\w{1,6}\s*\)\s*\.?", re.I
-)  #: a formula, ``f(x)``, ``f(theta)``: no letter and its remark
+#: A formula, ``f(x)``, ``f(theta)``: no letter and its remark.
+_CALL = re.compile(r"[a-z]\(\s*\w{1,6}\s*\)\s*\.?", re.I)
 
 
 def _on_lettered(text: str, choices: Choices, letters: Letters) -> list[str]:

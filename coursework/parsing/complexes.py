@@ -18,9 +18,8 @@ from coursework.parsing.spelling import shorten
 from coursework.parsing.units import Unit, plain_unit
 from coursework.parsing.vocabulary import Unreadable
 
-_IMAGINARY = (
-    "imaginary_one",
-)  #: with a variable, ``i`` and ``j`` are the imaginary unit to the reader of formulas
+#: With a variable, ``i`` and ``j`` are the imaginary unit to the reader of formulas.
+_IMAGINARY = ("imaginary_one",)
 _ANGLE_SIGN = re.compile(r"\\angle(?![A-Za-z])|∠|∟|/_|(?<=[\d\s)])<(?=\s*[-+\d])")
 _PAIR = re.compile(r"\(\s*([^();]+?)\s*;\s*([^();]*(?:°|deg|degr\w+|rad)\s*)\)\s*(.*)", re.I)
 _PREFIXED = re.compile(r"(?<![A-Za-z0-9_.])([ij])\s*(?=\d)")

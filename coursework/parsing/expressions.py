@@ -173,9 +173,8 @@ class _Parser:
     def raised(self, base: Operation, exponent: Operation) -> Operation:
         imaginary = any((n.kind, n.name) == ("constant", "i") for n in exponent.walk())
         if base == Operation("variable", "e") and imaginary:
-            base = Operation(
-                "constant", "e"
-            )  # an offset may be called e, but not under an imaginary exponent
+            # An offset may be called e, but not under an imaginary exponent.
+            base = Operation("constant", "e")
         if exponent.constant and not imaginary:
             with np.errstate(all="ignore"):
                 size = abs(compute(exponent, {}))

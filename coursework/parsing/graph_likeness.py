@@ -37,9 +37,8 @@ class Compared:
     no_kind: list[Edge] = field(default_factory=list)
     none: list[Edge] = field(default_factory=list)  #: bodies that are not joined
     double: list[Edge] = field(default_factory=list)
-    shared: list[Edge] = field(
-        default_factory=list
-    )  #: one pair too many of a pivot that several bodies share
+    #: One pair too many of a pivot that several bodies share.
+    shared: list[Edge] = field(default_factory=list)
     not_shared: list[Edge] = field(default_factory=list)
     unknown: list[Edge] = field(default_factory=list)
 

@@ -375,9 +375,8 @@ def refuse_no_number(text: str, target: Unit) -> None:
         raise Stop("not_a_number", text)
 
 
-_PAIR = re.compile(
-    r"[(\[{]\s*[+-]?[0-9]+\s*,\s*0+\s*[)\]}]"
-)  #: ``(0,0)`` is a point; who writes 0 writes no bracket and comma
+#: ``(0,0)`` is a point; who writes 0 writes no bracket and comma.
+_PAIR = re.compile(r"[(\[{]\s*[+-]?[0-9]+\s*,\s*0+\s*[)\]}]")
 
 
 def _worked_out(text: str, target: Unit, *, per_one: bool = False) -> list[Amount]:
@@ -605,9 +604,8 @@ def target_unit(unit: str) -> Unit:
     return parse_unit(unit)
 
 
-_LINES = re.compile(
-    r"[0-9][^\n]*\n\s*(?![\s=≈])[^\n]*[0-9]"
-)  #: a number on each of two lines, none of them going on
+#: A number on each of two lines, none of them going on.
+_LINES = re.compile(r"[0-9][^\n]*\n\s*(?![\s=≈])[^\n]*[0-9]")
 
 
 def read_number(text: Any, unit: str, *, thousands: bool = True, measured: bool = True) -> Reading:
@@ -672,9 +670,8 @@ def read_numbers(texts: Sequence[object], unit: str) -> tuple[np.ndarray, np.nda
     return values, left
 
 
-_COUNTED = re.compile(
-    r"(?<=[0-9])\s*(?:ddl|dof|degrés? de libertés?|degrees? of freedom)[\s.]*$", re.I
-)  #: what a whole number may be of
+#: What a whole number may be of.
+_COUNTED = re.compile(r"(?<=[0-9])\s*(?:ddl|dof|degrés? de libertés?|degrees? of freedom)[\s.]*$", re.I)
 
 
 def read_integer(text: Any) -> Reading:

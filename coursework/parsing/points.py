@@ -22,9 +22,8 @@ from coursework.parsing.vocabulary import MAX_LENGTH, Unreadable
 _POINT = re.compile(r"(?:[^\W\d_]\w{0,9}\s*)?[(\[{<](?P<inside>.*)[)\]}>]\s*(?P<unit>.*)", re.DOTALL)
 
 
-_OF_BASE = re.compile(
-    r"(?<=[)\]}])\s*_\s*(?:\{\s*\w{1,2}\s*\}|[^\W\d_](?![^\W_]))"
-)  #: the name of a base, ``(1, 0, 1)_a``
+#: The name of a base, ``(1, 0, 1)_a``.
+_OF_BASE = re.compile(r"(?<=[)\]}])\s*_\s*(?:\{\s*\w{1,2}\s*\}|[^\W\d_](?![^\W_]))")
 
 _SIGNED_AFTER_SPACE = re.compile(r"\d\s+[-+\u2212]\d")
 

@@ -52,9 +52,8 @@ def unwrapped(text: str) -> str:
 
 
 _SUPERSCRIPTS = dict(zip("⁰¹²³⁴⁵⁶⁷⁸⁹⁺⁻", "0123456789+-", strict=True))
-_BROKEN_POWER = re.compile(
-    "(?<=[A-Za-z])[-−–‐](?=[²³¹⁰⁴-⁹])"
-)  #: ``s-²``, the sign of an exponent that is not raised
+#: ``s-²``, the sign of an exponent that is not raised.
+_BROKEN_POWER = re.compile("(?<=[A-Za-z])[-−–‐](?=[²³¹⁰⁴-⁹])")
 _SUPERSCRIPT_RUN = re.compile(f"[{''.join(_SUPERSCRIPTS)}]+")
 
 

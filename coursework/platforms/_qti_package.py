@@ -16,9 +16,8 @@ from coursework.system.zips import PackedFile, compressed, zipped
 
 _ITEMS, _TEST = "items", "test.xml"
 
-Files = dict[
-    str, PackedFile
-]  #: of an item, by their paths below the items' folder: the item, then its pictures
+#: Of an item, by their paths below the items' folder: the item, then its pictures.
+Files = dict[str, PackedFile]
 
 
 def item_content(item: Item, pieces: PagePieces, spelling: QtiSpelling) -> Files:

@@ -165,9 +165,8 @@ def _evaluated(maxima: str, answers: Mapping[int, float]) -> float | None:
     }
     text = maxima.replace("%pi", "PI").replace("%i", "I").replace("^", "**")
     try:
-        value = complex(
-            eval(compile(text, "<formula>", "eval"), {"__builtins__": {}}, space)
-        )  # of our own print
+        # Of our own print.
+        value = complex(eval(compile(text, "<formula>", "eval"), {"__builtins__": {}}, space))
     except (ArithmeticError, ValueError):
         return None
     return value.real if abs(value.imag) <= _SAME * max(1.0, abs(value)) else None

@@ -26,9 +26,8 @@ class Platform(ABC):
     """
 
     name: ClassVar[str] = ""
-    draws_variants: ClassVar[bool] = (
-        True  #: it draws a variant of a pool for each student; else it marks variants issued by name
-    )
+    #: It draws a variant of a pool for each student; else it marks variants issued by name.
+    draws_variants: ClassVar[bool] = True
 
     def content(self, item: Item, pieces: PagePieces) -> Any:
         """Return what the files hold of a variant that the platform draws: plain data."""

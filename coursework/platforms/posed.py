@@ -71,13 +71,11 @@ class Posed:
 
     question: Question
     kind: str  #: number, choice, choices, collected
-    intervals: tuple[
-        Interval, ...
-    ] = ()  #: the right ones first, then those of errors: the first that contains an answer counts
+    #: The right ones first, then those of errors: the first that contains an answer counts.
+    intervals: tuple[Interval, ...] = ()
     options: tuple[Option, ...] = ()  #: in the order printed
-    features: frozenset[str] = (
-        frozenset()
-    )  #: features of our marking, by the names of :mod:`~coursework.platforms.losses`
+    #: Features of our marking, by the names of :mod:`~coursework.platforms.losses`.
+    features: frozenset[str] = frozenset()
 
     @property
     def points(self) -> float:

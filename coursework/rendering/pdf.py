@@ -30,9 +30,8 @@ from coursework.system.memory import little_memory
 
 _LOCAL = threading.local()
 _TAGGED: Mapping[str, Any] = {"format": "pdf", "pdf_standards": ["a-2a", "ua-1"], "timestamp": 0}
-_MOVING = re.compile(
-    r"#(?:in-room|lesson-figure)\("
-)  #: where a block begins that moves to where there is room
+#: Where a block begins that moves to where there is room.
+_MOVING = re.compile(r"#(?:in-room|lesson-figure)\(")
 _SETTLED = re.compile(r"^#let settled = .*$", re.MULTILINE)
 _GUESSED = re.compile(r"^#let guessed = .*$", re.MULTILINE)
 _PART = "\n//#\n"  #: above each part of a document that begins on a page of its own

@@ -21,9 +21,8 @@ from coursework.model import Exercise
 from coursework.rendering.keeping import in_script
 from coursework.sheets.sheet import Handout, Question
 
-FIELD = (
-    "drawing"  #: name of the text area in which the drawing is stored, after the prefix of the sheet's boxes
-)
+#: Name of the text area in which the drawing is stored, after the prefix of the sheet's boxes.
+FIELD = "drawing"
 _GRAPHS = ("graph", "unnamed_graph")
 _GRAPH_MM = (100, 70)  #: of the surface of a joint graph, whose lengths mean nothing
 _INSET = 90.0  #: size of the small figure of the links, px

@@ -458,11 +458,12 @@ def offered(question: Question) -> tuple[tuple[str, str], ...]:
     return tuple((letter, label) for letter, (_, label) in zip(letters, question.choices, strict=True))
 
 
+#: Width of all choices; of a box and its letter; between columns.
 _CHOICES_MM, _BOX_MM, _BETWEEN_MM = (
     146.0,
     11.0,
     4.0,
-)  #: width of all choices; of a box and its letter; between columns
+)
 
 
 def columns(question: Question, lang: str) -> int:

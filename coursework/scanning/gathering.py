@@ -128,12 +128,10 @@ class Gathered:
     waits: dict[str, int] = field(default_factory=dict)  #: cards by id of a page
     unused: list[Typed] = field(default_factory=list)  #: what was typed and fits nothing that was scanned
     pending: list[Pending] = field(default_factory=list)
-    confirmed: dict[str, int] = field(
-        default_factory=dict
-    )  #: doubted numbers that count as they are the right answer, by id of a page
-    drawn: dict[tuple[str, str, int], FieldReading] = field(
-        default_factory=dict
-    )  #: what was drawn on, by paper, exercise and seed
+    #: Doubted numbers that count as they are the right answer, by id of a page.
+    confirmed: dict[str, int] = field(default_factory=dict)
+    #: What was drawn on, by paper, exercise and seed.
+    drawn: dict[tuple[str, str, int], FieldReading] = field(default_factory=dict)
 
 
 Part: TypeAlias = tuple[str, int, str]  #: exercise, seed and id

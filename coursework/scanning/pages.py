@@ -20,9 +20,8 @@ from coursework.scanning.ticks import TAKEN_BACK, TICKED, UNSURE, tick
 from coursework.sheets.answer_pages import AnswerField, AnswerPage
 
 _CODE = re.compile(r"CW1 ([A-Z2-7]+) (\d+)/(\d+)")
-_SURER = (
-    5  #: times must a box be in black and white, where a gap of a stroke closes and an open 4 looks like a 6
-)
+#: Times must a box be in black and white, where a gap of a stroke closes and an open 4 looks like a 6.
+_SURER = 5
 
 #: What a picture may be found to be.
 FOUND = ("answers", "statement", "no code", "no sheet", "other assignment", "two pages", "not straight")

@@ -31,9 +31,8 @@ _BLACK, _WHITE = 40, 215  #: of 255: what is between is grey
 _STRIPS = 100  #: across the picture, in which a streak is looked for
 _STREAK = 5  #: of 255, by how much a streak is darker at least
 _FEW = 20  #: pages that a file of any size may have
-_MOST_PIECES = (
-    5_000  #: pictures and words of a page that is drawn here; one of more, or of lines, is drawn apart
-)
+#: Pictures and words of a page that is drawn here; one of more, or of lines, is drawn apart.
+_MOST_PIECES = 5_000
 _MOST_PICTURES = 8  #: of a page that is drawn here
 _DRAWING = ResourceLimits(30.0, 1_500_000_000)  #: of a process in which a page is drawn
 _NEEDS = ("reading scans needs", "scan")

@@ -31,9 +31,8 @@ if TYPE_CHECKING:
 
 FOLDER = "queue"
 _EMBEDDED = 32_000_000  #: bytes of pictures that the page holds in itself; more lie beside it
-_PLACES = "".join(
-    chr(0xE000 + place) for place in range(256)
-)  #: of coordinates in a pattern: letters that nobody types
+#: Of coordinates in a pattern: letters that nobody types.
+_PLACES = "".join(chr(0xE000 + place) for place in range(256))
 
 #: Gives the file of a field's picture, below the folder of the job.
 Cut = Callable[[Path, str, ScannedField, int], str]

@@ -17,9 +17,8 @@ from coursework.scenes.reel import Reel
 EFFECTS = KINEMATIC
 UNIT = {"velocity": "mm/s", "acceleration": "mm/s^2", "coriolis": "mm/s^2"}
 
-Vectors: TypeAlias = tuple[
-    str, str, np.ndarray
-]  #: of a point: its name, the effect, complex over the instants
+#: Of a point: its name, the effect, complex over the instants.
+Vectors: TypeAlias = tuple[str, str, np.ndarray]
 
 
 @dataclass(frozen=True)

@@ -24,9 +24,8 @@ if TYPE_CHECKING:
 
 SECONDS = 6.0  #: how long a turn of the driver, or a swing, lasts on the screen
 MOST_TURNS = 20  #: of its driver, in a film
-_BEND = (
-    1e-3  #: how far from a straight line something moves between two instants, over the size of the mechanism
-)
+#: How far from a straight line something moves between two instants, over the size of the mechanism.
+_BEND = 1e-3
 _HALVINGS = 4  #: of a step, where something moves fast
 
 

@@ -41,9 +41,8 @@ class CheckedAnswers(NamedTuple):
     """Marked answers."""
 
     marking: SheetMarks
-    answers: Mapping[
-        str, Any
-    ]  #: that were marked: those that were given, and the kept ones where these are blank
+    #: That were marked: those that were given, and the kept ones where these are blank.
+    answers: Mapping[str, Any]
     copied: int | None = None  #: the seed of another variant that these very answers were for
     changed: tuple[str, ...] = ()  #: the parts of which something is new: an answer, or what becomes of it
 
@@ -89,9 +88,8 @@ class StudyAttempt:
         try:
             marking = mark(self.variant, now)
         except Exception:
-            self.kept.add(
-                self.variant.seed, "answers", dict(given)
-            )  # nothing is lost by a fault of the course
+            # Nothing is lost by a fault of the course.
+            self.kept.add(self.variant.seed, "answers", dict(given))
             raise
         copied, theirs = same_as_another(self.variant, self.kept, given, marking)
         seed = self.variant.seed

@@ -136,9 +136,8 @@ class AnswerPage:
     code_text: str  #: what the QR code says
     width: float
     height: float
-    marks: tuple[
-        tuple[float, float], ...
-    ]  #: centres of the black squares: upper left, upper right, lower right, lower left
+    #: Centres of the black squares: upper left, upper right, lower right, lower left.
+    marks: tuple[tuple[float, float], ...]
     code: Box  #: of the QR code, without its rim
     fields: tuple[AnswerField, ...]
     title: Box
@@ -146,9 +145,8 @@ class AnswerPage:
     rules: Box | None  #: none on a page that is one large drawing
     guide: tuple[Box, ...] = ()  #: boxes with the digits 0 to 9 as they are to be written
     heads: tuple[PageHead, ...] = ()
-    captions: Box | None = (
-        None  #: a strip for what the columns of boxes are called, above the first row of numbers
-    )
+    #: A strip for what the columns of boxes are called, above the first row of numbers.
+    captions: Box | None = None
 
 
 def paper_code(

@@ -63,9 +63,8 @@ class DrawnPiece:
     tall: float = 0.0  #: mm that it may take on paper; as any other unless told
     number: str = ""  #: 3.4: the fourth figure of the third lesson; empty in an example and in an answer
     example: str = ""  #: Example 3.2: that which it poses, if it is the first drawing of one
-    on_paper: bool = (
-        True  #: whether paper shows it too; what moves beside its own picture does not, and has no number
-    )
+    #: Whether paper shows it too; what moves beside its own picture does not, and has no number.
+    on_paper: bool = True
 
 
 @dataclass(frozen=True)
@@ -153,9 +152,8 @@ class LessonText:
     """A lesson as a book prints it."""
 
     name: str
-    number: (
-        int  #: among the lessons of the course; 0 for a page before the first chapter or after the last one
-    )
+    #: Among the lessons of the course; 0 for a page before the first chapter or after the last one.
+    number: int
     lang: str
     title: str
     pieces: tuple[Piece, ...]

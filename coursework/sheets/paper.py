@@ -26,9 +26,8 @@ class PaperHeading:
     title: str
     course: str
     student: str  #: name or code; empty when the paper is nobody's
-    identity: tuple[
-        tuple[str, str], ...
-    ] = ()  #: what is called so, and what is printed; empty: a box to fill in by hand
+    #: What is called so, and what is printed; empty: a box to fill in by hand.
+    identity: tuple[tuple[str, str], ...] = ()
     date: str = ""
     duration: str = ""
     instructions: str = ""  #: Markdown

@@ -43,9 +43,8 @@ class Question:
     prompt: str  #: Markdown
     unit: str  #: printed beside the answer box; empty if none
     kind: str  #: a file of :mod:`coursework.kinds`
-    choices: tuple[
-        tuple[str, str], ...
-    ]  #: (key, label) pairs of a choice, in the order printed; no sheet shows a key
+    #: (key, label) pairs of a choice, in the order printed; no sheet shows a key.
+    choices: tuple[tuple[str, str], ...]
     points: float
     tolerance: str  #: in words a student understands; empty for exact kinds
     is_exact: bool = False  #: judged without a margin
@@ -54,15 +53,13 @@ class Question:
     hint: str = ""  #: the form of an answer, where the engine's words have none for the kind
     asks_unit: bool = False  #: the answer is to come with its unit, which the sheet does not print
     rule: str = ""  #: how its points are counted, in words, where that is not plain
-    room: int | tuple[int, int] | None = (
-        None  #: lines to write on, or width and height in mm of a box to draw in
-    )
+    #: Lines to write on, or width and height in mm of a box to draw in.
+    room: int | tuple[int, int] | None = None
     judge: str = ""  #: of the parts that are judged together with this one
     letters: tuple[str, ...] = ()  #: of the choices; none of a sheet that was issued without
     key: str = ""  #: what a notebook calls its answer; its id unless told
-    keys: tuple[
-        tuple[str, str], ...
-    ] = ()  #: above a telephone's keyboard: what a key shows, and what it types
+    #: Above a telephone's keyboard: what a key shows, and what it types.
+    keys: tuple[tuple[str, str], ...] = ()
     types_numbers: bool = False  #: a keyboard of numbers does, with these keys
     cells: tuple[tuple[ComponentBox, ...], ...] = ()  #: boxes for its components on a page, in groups
     cells_form: str = ""  #: the text that they make, ``({} ; {})``
@@ -87,12 +84,10 @@ class Handout:
     record: Mapping[str, object]  #: the variant's JSON record
     more_figures: tuple[tuple[Figure | Picture, str], ...] = ()  #: besides the first, each with what it shows
     drawing_mm: tuple[int, int] | None = None  #: width and height of the box to draw in, where there is one
-    surface_mm: tuple[int, int] | None = (
-        None  #: the same of the drawing surface of a page, where nothing is printed
-    )
-    answer_pages: tuple[
-        AnswerPage, ...
-    ] = ()  #: behind the statement, or the paper that it is of, where it is answered there
+    #: The same of the drawing surface of a page, where nothing is printed.
+    surface_mm: tuple[int, int] | None = None
+    #: Behind the statement, or the paper that it is of, where it is answered there.
+    answer_pages: tuple[AnswerPage, ...] = ()
 
     @property
     def points(self) -> float:
@@ -167,9 +162,8 @@ class Practice:
     exercise: str
     version: int
     course: str  #: name of the course's folder; empty for the course that the package brings
-    seed: (
-        int | None
-    )  #: of a variant that was issued to nobody; none where there is no other, or none is offered
+    #: Of a variant that was issued to nobody; none where there is no other, or none is offered.
+    seed: int | None
     lessons: tuple[Lesson, ...] = ()
     questions: tuple[Question, ...] = ()  #: of that variant
 
@@ -184,9 +178,8 @@ class FeedbackSheet:
     out_of: float
     practice: Practice | None = None
     solution: AnswerSheet | None = None  #: of the student's own variant, once it may be shown
-    drawings: tuple[
-        OwnDrawing, ...
-    ] = ()  #: the student's over the right ones, once the solution may be shown
+    #: The student's over the right ones, once the solution may be shown.
+    drawings: tuple[OwnDrawing, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -216,6 +209,5 @@ class StudySheet:
     theory: frozenset[str] = frozenset()  #: ids of questions that no other variant asks anew
     has_example: bool = False  #: whether the solution of another variant can be shown with blanks
     lessons: tuple[Lesson, ...] = ()  #: that teach it
-    beside: frozenset[str] = (
-        frozenset()
-    )  #: the lessons whose notebooks stand beside it: links lead to these alone
+    #: The lessons whose notebooks stand beside it: links lead to these alone.
+    beside: frozenset[str] = frozenset()

@@ -213,9 +213,8 @@ def _given_out(conditions: Sequence[tuple[Node, Node]], placed: set[Node]) -> li
     A body takes three, a pin two, what is placed none.
     """
     room = {node: 0 if node in placed else 3 if node[0] == "body" else 2 for e in conditions for node in e}
-    held: dict[Node, list[tuple[int, int]]] = {
-        node: [] for node in room
-    }  # (condition, end) it took, each once
+    # (condition, end) it took, each once.
+    held: dict[Node, list[tuple[int, int]]] = {node: [] for node in room}
     shares = [[0, 0] for _ in conditions]
 
     def settle(number: int, tried: set[Node]) -> bool:

@@ -71,9 +71,8 @@ def is_settled(states_now: Iterable[State], begun: int) -> bool:
     )
 
 
-State = list[
-    int
-]  #: of a file: size, last change of its content and of its entry, ns; nothing where there is none
+#: Of a file: size, last change of its content and of its entry, ns; nothing where there is none.
+State = list[int]
 
 
 def states(*folders: Path) -> dict[str, State]:

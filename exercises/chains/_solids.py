@@ -190,10 +190,11 @@ def _place(arrangement) -> np.ndarray:
     return np.array([list(ARRANGEMENTS).index(one) for one in arrangement.ravel()]).reshape(arrangement.shape)
 
 
+#: Components that count; in the plane rotation z, velocities x, y.
 _IN_SPACE, _IN_PLANE = (
     slice(0, 6),
     slice(2, 5),
-)  #: components that count; in the plane rotation z, velocities x, y
+)
 
 
 def mobility_of_loop(joints, directions, points):

@@ -24,6 +24,7 @@ from coursework.kinematics.dyads import rrr
 
 from ._machines import rows_of
 
+#: Mm, degrees, rad/s: the linkage of the lesson.
 R1, R2, R3, R4, THETA2, OMEGA2 = (
     200.0,
     60.0,
@@ -31,7 +32,7 @@ R1, R2, R3, R4, THETA2, OMEGA2 = (
     140.0,
     60.0,
     10.0,
-)  #: mm, degrees, rad/s: the linkage of the lesson
+)
 KA = 100.0  #: mm/s^2 for a mm of its polygon
 SLOTTED_KA = 200.0
 E_ON_AB = 0.42 + 0.40j  #: the coupler's third point: AE over AB

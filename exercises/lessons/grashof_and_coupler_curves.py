@@ -437,11 +437,12 @@ def _pedal_at(theta2):
     )
 
 
+#: 2 : 1 : 2.5 : 2.5, the coupler carried on to twice its length.
 STRAIGHT = (
     (28.0, 14.0, 35.0, 35.0),
     70.0,
     0.0,
-)  #: 2 : 1 : 2.5 : 2.5, the coupler carried on to twice its length
+)
 
 
 def straight_line():

@@ -405,9 +405,8 @@ def polygons_to_be_matched():
         )
         a, across = 1j * A, 1j * (B - C)
         along = B - A
-        b = (
-            across * (a * along.conjugate()).real / (across * along.conjugate()).real
-        )  # equal projections on AB
+        # Equal projections on AB.
+        b = across * (a * along.conjugate()).real / (across * along.conjugate()).real
         polygons.append([vector(0, a, "V_A"), vector(0, b, "V_B"), line(a, b)])
     drawings = [*linkages, *(polygons[k] for k in ORDER)]
     return Figure(*rows_of(drawings, 4, 100 + 80j), paper_mm=(165, 95))

@@ -206,9 +206,8 @@ def residual(
     spin = second[:3]
     turning = np.array([[0, -spin[2], spin[1]], [spin[2], 0, -spin[0]], [-spin[1], spin[0], 0]])
     at_hinge = second[3:] + turning @ arm
-    work = [
-        np.dot([X2, Y2, Z2], np.cross(np.eye(3)[k], arm)) - W[3 + k] for k in range(3)
-    ]  # by a unit rotation about each axis through A1
+    # By a unit rotation about each axis through A1.
+    work = [np.dot([X2, Y2, Z2], np.cross(np.eye(3)[k], arm)) - W[3 + k] for k in range(3)]
     size = 20 * 200.0
     return (
         *((at_origin - v1 * e) / size),

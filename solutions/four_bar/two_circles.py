@@ -34,10 +34,11 @@ from ..polygons._drawn_start import *
 
 ANGLES = {"1": ("theta3_open", "theta4_open"), "2": ("theta3_crossed", "theta4_crossed")}
 _WIDTH = 2 * TOLERANCE_MM  #: by which a length on paper may be off
+#: Degrees by which an angle may be off: on one's own drawing, and from the right one.
 _MEASURED, _DRAWN = (
     1.0,
     2.0,
-)  #: degrees by which an angle may be off: on one's own drawing, and from the right one
+)
 _ASKED = DrawingParts(
     scale="kl",
     points={"p": "o", "a": "a", "c": "c"},

@@ -35,11 +35,12 @@ def test_every_statement_agrees_with_its_joint_graph_and_its_solution(name):
 
 
 def test_every_driven_exercise_states_its_mechanism():
+    # A contact that rolls and slides, and axes in space.
     beyond = {
         "cam_follower",
         "flat_faced_cam",
         "geometrical_closure",
-    }  # a contact that rolls and slides, and axes in space
+    }
     assert {n for n in COURSE if COURSE[n].spec.driver is not None and n not in STATED} == beyond
 
 

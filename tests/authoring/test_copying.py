@@ -17,11 +17,12 @@ from coursework.issuing.issued import plain_value
 
 COURSE = coursework.open_course()
 BUILTIN = COURSE.folder
+#: Another exercise, data, and shared modules across folders.
 FEW = (
     "havens_construction",
     "vocabulary",
     "complex_chain",
-)  #: another exercise, data, and shared modules across folders
+)
 
 
 def copied(target, name, renamed="", langs=("en", "fr")):

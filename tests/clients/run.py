@@ -82,9 +82,8 @@ def moodle(code: Path, stack: ExitStack) -> dict[str, str]:
     told = [f"--{name}={value}" for name, value in options.items()]
     command = [*PHP, "admin/cli/install.php", *told, "--non-interactive", "--agree-license"]
     subprocess.run(command, cwd=code, check=True, stdout=subprocess.DEVNULL)
-    french = (
-        data / "lang" / "fr"
-    )  # packs of languages come from the network: of the French one the signs in numbers suffice
+    # Packs of languages come from the network: of the French one the signs in numbers suffice.
+    french = data / "lang" / "fr"
     french.mkdir(parents=True)
     signs = {"thislanguage": "Français", "decsep": ",", "thousandssep": " ", "parentlanguage": ""}
     lines = [f"$string['{name}'] = '{text}';" for name, text in signs.items()]

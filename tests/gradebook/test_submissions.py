@@ -403,9 +403,8 @@ def test_no_mutation_with_a_hash_loses_an_answer(tmp_path, count):
         mutated = code[:place] + cut * (length < 2) + code[place + length :]
         rows, rejected = read(tmp_path, "a.ipynb", notebook(mutated))
         out = " ".join([str(r.answer) for r in rows] + [r.row.get("answer", "") for r in rejected])
-        whole = any(
-            "behind a #" not in r.reason for r in rejected
-        )  # the cell itself, which is kept with its notebook
+        # The cell itself, which is kept with its notebook.
+        whole = any("behind a #" not in r.reason for r in rejected)
         lost = [v for v in parts.values() if v in mutated and v not in out]
         assert whole or not lost, (mutated, lost)
         tried += not whole

@@ -290,9 +290,8 @@ def test_results_that_books_print_and_theorems_say(course):
     assert np.ptp(M[:, 0]) < 1e-3 * np.ptp(M[:, 1])
     given = {"a": 168.0, "b": 80.0, "c": 26.0}
     Q = course["hart"].solve(only="Q", **given, theta2=np.linspace(-25.0, 25.0, 11))["Q"]
-    line = (
-        3 / 16 * (given["a"] ** 2 - given["b"] ** 2) / (2 * given["c"])
-    )  # the inverse of a circle through its centre
+    # The inverse of a circle through its centre.
+    line = 3 / 16 * (given["a"] ** 2 - given["b"] ** 2) / (2 * given["c"])
     assert Q[:, 0] == pytest.approx(np.full(11, line), rel=1e-12)
     assert np.ptp(Q[:, 1]) > 30
 

@@ -195,9 +195,8 @@ def test_an_exchange_that_a_judge_names_is_counted_once_and_told_in_its_words():
     marking = variant.grade({**right, "r2": right["r4"], "r4": right["r2"]})
     assert [marking[i].verdict for i in right] == ["slip:exchanged", "correct", "follow_through"]
     assert "which ratio belongs to which angle?" in marking["r2"].feedback
-    by_chance = COURSE["function_generation"].variant(
-        18, lang="en"
-    )  # other answers that are near an exchange
+    # Other answers that are near an exchange.
+    by_chance = COURSE["function_generation"].variant(18, lang="en")
     key, name = by_chance.key, "ratios_upside_down"
     answers = {"r2": key.wrong[name]["r2"], "r3": key.reference["r3"], "r4": key.wrong[name]["r4"]}
     marking = by_chance.grade({i: significant(float(value), 6) for i, value in answers.items()})

@@ -575,9 +575,8 @@ def read_all(texts: Iterator[str]) -> Counter[tuple[str, str]]:
             check_common(text, reading)
             check(text, reading)
         for one in reading.values if other == "equation" else ():
-            same = same_equation(
-                one, REFERENCE, parameters=("r1", "r2", "R")
-            )  # it can be compared with another
+            # It can be compared with another.
+            same = same_equation(one, REFERENCE, parameters=("r1", "r2", "R"))
             statuses["comparison", str(same)] += 1
     return statuses
 

@@ -14,11 +14,12 @@ from coursework.language.words import languages
 from coursework.linkages.compiled import compiled
 from coursework.structure.assour import roman
 
+#: And the machines of each.
 LESSONS = {
     "real_machines_levers": 4,
     "real_machines_paths": 4,
     "real_machines_strokes": 4,
-}  #: and the machines of each
+}
 TURN = np.radians(np.arange(0.0, 360.0, 0.25))
 
 

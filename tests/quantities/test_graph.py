@@ -263,9 +263,8 @@ def test_the_walk_meets_what_a_formula_is_stated_with_before_it():
         return np.arcsin(height / length)
 
     span.__formula__ = r"<length> \cos <tilt>"
-    tilt.__formula__ = (
-        r"\arccos \frac{<span>}{<length>}"  # each is stated with the other: the first asked comes last
-    )
+    # Each is stated with the other: the first asked comes last.
+    tilt.__formula__ = r"\arccos \frac{<span>}{<length>}"
     graph, rod = Graph({f.__name__: f for f in (span, tilt)}), {"length": 5.0, "height": 3.0}
     assert graph.walk(("span",), rod) == ("tilt", "span")
     assert graph.plan(("span",), rod) == ("span",)

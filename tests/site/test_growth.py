@@ -24,13 +24,14 @@ NAMED = {  #: what an address names in its query
     "/desk/{assignment:int}/figure": f"?exercise={EXERCISE}&seed={SEEDS[ZOE]}",
     "/desk/{assignment:int}/feedback": f"?student={ZOE}",
 }
+#: Ends of addresses that draw much and read little.
 ONCE = (
     "report",
     "report.pdf",
     "feedback",
     "sheets",
     "motion",
-)  #: ends of addresses that draw much and read little
+)
 DIGEST = re.compile("[0-9a-f]{64}")
 
 

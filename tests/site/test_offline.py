@@ -108,9 +108,8 @@ def test_a_seen_page_opens_without_a_network_and_what_is_typed_goes_when_it_is_b
     until(lambda: page.evaluate("() => caches.match(location.pathname + '?saved').then(Boolean)"))
     page.context.set_offline(True)
     page.goto(address)
-    until(
-        lambda: page.evaluate("document.querySelector('#answer-a-theta4').value === '88'")
-    )  # saved after it was opened
+    # Saved after it was opened.
+    until(lambda: page.evaluate("document.querySelector('#answer-a-theta4').value === '88'"))
     page.fill("#answer-a-rA", "123")
     page.wait_for_selector("[data-kept]:has-text('No connection')")
     page.goto(address)

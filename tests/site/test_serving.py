@@ -101,9 +101,8 @@ def test_processes_are_begun_again_and_end_with_the_first(tmp_path):
         first = until(lambda: len(site.workers) == 2 and site.workers)
         assert answers(site.url) == 404
         kill(first[0])
-        until(
-            lambda: first[0] not in site.workers and len(site.workers) == 2, 120
-        )  # it may be taken for one that is slow
+        # It may be taken for one that is slow.
+        until(lambda: first[0] not in site.workers and len(site.workers) == 2, 120)
         assert answers(site.url) == 404
         now = site.workers
         assert site.end() == 0

@@ -80,9 +80,8 @@ class JudgedDrawing:
     is_legible: bool  #: large enough to tell directions
     fits_stated_scale: bool  #: False where it is consistent at another scale than the stated one
     tolerance: float = TOLERANCE_MM
-    ideal: Mapping[str, complex] = field(
-        default_factory=dict
-    )  #: mm on paper: each point from those before it
+    #: Mm on paper: each point from those before it.
+    ideal: Mapping[str, complex] = field(default_factory=dict)
 
     def is_right(self, point: str) -> bool:
         """Return whether the point is drawn and its vectors are right.
@@ -430,9 +429,8 @@ def _scale(
     ranges = list(_ranges(polygon, points, width))
     best, count = _most_covered(ranges)
     if stated is not None:
-        telling = [
-            (low, high) for low, high in ranges if high < 2 * low
-        ] or ranges  # a short one fits many scales
+        # A short one fits many scales.
+        telling = [(low, high) for low, high in ranges if high < 2 * low] or ranges
         agrees = any(0 < low <= 1 / stated <= high for low, high in telling)
         is_other = count > 1 and abs(best * stated - 1) > _SAME_SCALE
         return (1 / best, False) if is_other and not agrees else (stated, True)

@@ -21,9 +21,8 @@ class Budget(NamedTuple):
     fields: int  #: fields of a form
     at_once: int  #: concurrent requests of one person; the others wait
     files: int = 0
-    by_ending: Mapping[str, int] = MappingProxyType(
-        {}
-    )  #: smaller limits in bytes for files with some suffixes
+    #: Smaller limits in bytes for files with some suffixes.
+    by_ending: Mapping[str, int] = MappingProxyType({})
     reading: ResourceLimits | None = None  #: limits of the process in which files are read
     readings: int = 1  #: concurrent readings of this budget in a process of the site
 

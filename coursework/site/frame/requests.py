@@ -220,9 +220,8 @@ class Route(NamedTuple):
     form_permission: Permission | None = None  #: permission of a form, if different
     staff_permission: Permission | None = None  #: permission if the path names a ``person`` of the staff
     attempt: Callable[[Request], Attempt] | None = None  #: attempt counted for a form with a password
-    by_group: bool = (
-        False  #: an assistant sees the students of their groups; otherwise the whole class is needed
-    )
+    #: An assistant sees the students of their groups; otherwise the whole class is needed.
+    by_group: bool = False
     audit_event: str = "exported"  #: name in the audit of a download by staff
 
     @property

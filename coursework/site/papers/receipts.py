@@ -78,11 +78,12 @@ def find(done: Sequence[Submission], code: str) -> Submission:
     raise HTTPException("own", 404)
 
 
+#: Seconds until a page reloads: minimum, addition for each earlier submission, maximum.
 _SOON, _EACH, _LONGEST = (
     3.0,
     0.2,
     60.0,
-)  #: seconds until a page reloads: minimum, addition for each earlier submission, maximum
+)
 
 
 class PendingMarking(NamedTuple):

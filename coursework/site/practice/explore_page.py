@@ -26,9 +26,8 @@ from coursework.site.frame.requests import HTTPException, Request, Route
 from coursework.site.mechanisms.mechanisms_page import address_of
 from coursework.site.papers.assignment_state import published_states
 
-SEED = (
-    FIRST_SEED - 1
-)  #: of the variant whose numbers the page begins with: one of no class and of no practice
+#: Of the variant whose numbers the page begins with: one of no class and of no practice.
+SEED = FIRST_SEED - 1
 _PLOT_MM = 62.0  #: width of a plot: its numbers can be read on a telephone
 _EVERY = 2  #: steps of a turn between two points of a plot
 _NOTHING: Mapping[str, Any] = {"closes": False, "figure": "", "plots": (), "numbers": (), "is_jack": False}

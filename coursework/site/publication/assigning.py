@@ -94,9 +94,8 @@ def _store(site: Site, wanted: AssignmentRequest, outcome: _Outcome, by: str, ev
     """Store all issued variants in one transaction; return the assignment's id."""
     with site.store.begin() as connection:
         number = put_issued(connection, outcome.content, wanted.name)
-        definition = {
-            key: value for key, value in wanted.table.items() if key != SECRET
-        }  # it has its own column
+        # It has its own column.
+        definition = {key: value for key, value in wanted.table.items() if key != SECRET}
         connection.execute(update(assignment).where(assignment.c.id == number).values(asked=definition))
         prepare_soon(site, connection, number)
         note(

@@ -285,9 +285,8 @@ def turned_between(attitudes):
     return vector * np.arcsin(sine) / sine
 
 
-FILMS = pytest.mark.parametrize(
-    "seed", [1, pytest.param(3, marks=pytest.mark.slow)]
-)  # the input turns one way, the other way
+# The input turns one way, the other way.
+FILMS = pytest.mark.parametrize("seed", [1, pytest.param(3, marks=pytest.mark.slow)])
 
 
 @FILMS

@@ -15,13 +15,14 @@ import coursework
 COURSE = coursework.open_course()
 EXERCISE = COURSE["crank_shaper_drawn"]
 FIRST, SECOND = ("p", "a", "b", "d", "e"), ("q", "a2", "k", "n", "b2", "d2", "m", "e2")
+#: Points of the second drawing that bear letters of the first.
 NAMES = {
     "p": "q",
     "a": "a2",
     "b": "b2",
     "d": "d2",
     "e": "e2",
-}  #: points of the second drawing that bear letters of the first
+}
 
 
 def told(given):
