@@ -1,11 +1,11 @@
 """What the dearest requests cost that one person can send: answers made to be slow to read, and bodies made
 to fill memory; and what becomes of assignments that nobody writes.
 
-python benchmarks/attacks.py                # all python benchmarks/attacks.py answers        # milliseconds
-of a processor, by kind of question, at lengths that double python benchmarks/attacks.py assignments    #
-files of assignments: how many are told in a line, how many are taken python benchmarks/attacks.py bodies
-# a site of its own on the loopback interface: status, milliseconds, memory python benchmarks/attacks.py
-uploads        # ten files of one student at once, and how long another student waits meanwhile
+python benchmarks/attacks.py                # all
+python benchmarks/attacks.py answers        # milliseconds of a processor, by question, at lengths that double
+python benchmarks/attacks.py assignments    # files of assignments: how many told in a line, how many taken
+python benchmarks/attacks.py bodies         # a site on the loopback interface: status, milliseconds, memory
+python benchmarks/attacks.py uploads        # ten files of one student at once, and how long another one waits
 """
 
 from __future__ import annotations

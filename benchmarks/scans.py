@@ -1,10 +1,10 @@
 """Answer pages filled in by hand, printed and scanned in simulation, and read: what is right, wrong, and left
 to a person.
 
-python benchmarks/scans.py FOLDER [PAGES] [KIND]   # 10 000 unless told, of one kind of scan or of all; goes
-on where it stopped python benchmarks/scans.py FOLDER table            # of what was read so far python
-benchmarks/scans.py FOLDER doubted          # of numbers that are doubted: what is taken if they are right
-answers python benchmarks/scans.py FOLDER wrong            # what was read wrong
+python benchmarks/scans.py FOLDER [PAGES] [KIND]   # 10 000 unless told, of one kind or all; goes on
+python benchmarks/scans.py FOLDER table            # of what was read so far
+python benchmarks/scans.py FOLDER doubted          # of doubted numbers: what is taken if they are right
+python benchmarks/scans.py FOLDER wrong            # what was read wrong
 
 Two thirds of the numbers are right answers of a variant, rounded; of the wrong ones most are near a right
 one: a digit changed or exchanged, another sign, a point elsewhere, a few per cent too many. FOLDER keeps the

@@ -1,9 +1,9 @@
 """A class that works on the site at the same time: how long answers take, and whether anything is lost.
 
-    python benchmarks/site_load.py                       500 students, ten minutes, SQLite, one process python
-    benchmarks/site_load.py --short               50 students, half a minute, each four times as fast python
-    benchmarks/site_load.py --postgres --workers 2 python benchmarks/site_load.py --all --out FILE.md   the
-    class, then PostgreSQL with 1, 2 and 4 processes: 12 minutes
+    python benchmarks/site_load.py                       500 students, ten minutes, SQLite, one process
+    python benchmarks/site_load.py --short               50 students, half a minute, each four times as fast
+    python benchmarks/site_load.py --postgres --workers 2
+    python benchmarks/site_load.py --all --out FILE.md   the class, then PostgreSQL with 1, 2 and 4 processes
 
 Each student opens the course and a sheet, reads, types (what is typed is sent as a draft, and what is read in
 it is asked for), checks, thinks, and goes on with the next question; half of the answers are right. Once in

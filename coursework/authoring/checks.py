@@ -10,7 +10,6 @@ import re
 from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from functools import partial
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -308,23 +307,24 @@ _TELLING = 6  #: words outside formulas that are never the same in two languages
 
 def check_translations(exercise: CourseExercise, report: CheckReport) -> None:
     """Check that no text is the same in two languages: one that was copied and not translated yet."""
-    first: dict[str, str] = {}  # the file, by the text
+    first: dict[tuple[str, str], str] = {}  # the file, by its kind and the text
     for lang in exercise.languages:
         variant = exercise.variant(0, lang)
-        for text in (
-            variant.text,
-            exercise.texts.text("solutions", lang, _every_name(exercise, variant)),
-        ):
+        texts = {
+            "exercises": variant.text,
+            "solutions": exercise.texts.text("solutions", lang, _every_name(exercise, variant)),
+        }
+        for kind, text in texts.items():
             pieces = {"the statement": text.opening} | {
                 f"section '## {name}'": section.text for name, section in text.sections.items()
             }
             for name, piece in pieces.items():
                 if len(_WORD.findall(_FORMULA.sub(" ", piece))) < _TELLING:
                     continue
-                source = first.setdefault(piece, text.source)
-                if source != text.source and Path(source).parent == Path(text.source).parent:
+                source = first.setdefault((kind, piece), text.source)
+                if source != text.source:
                     report.fail(
-                        f"{text.source}: {name} says the same as in {Path(source).name}; translate it"
+                        f"{text.source}: {name} says the same as in {source.rpartition('/')[2]}; translate it"
                     )
 
 

@@ -12,6 +12,7 @@ from coursework.issuing.identity import PRESENCE, plain
 from coursework.issuing.issued import Issued
 
 PRESENT, ABSENT, EXCUSED = "present", "absent", "excused"
+AWAY = (ABSENT, EXCUSED)
 _STATES = {
     **dict.fromkeys(
         ("present", "presente", "present(e)", "p", "x", "yes", "oui", "o", "1", "true", "vrai"), PRESENT

@@ -34,15 +34,14 @@ def refuse_still_sides(polygons: Sequence[PolygonWriter], exercise: ModuleType, 
     BadInput
         A side has no length, with the line of the question.
     """
+    known = Solution.of(exercise.__name__, solution, "").graph
+    given = _samples(exercise.EXERCISE.given)
     for polygon in polygons:
-        made, sides = (
-            dict(vars(solution)),
-            {f"length_of_side_{k}": side for k, side in enumerate(polygon.sides)},
-        )
+        made = dict(vars(solution))
+        sides = {f"length_of_side_{k}": side for k, side in enumerate(polygon.sides)}
         for name, side in sides.items():
             exec(f"def {name}({', '.join(names_in(side.value))}):\n    return abs({side.value})", made)
-        graph = Solution.of(exercise.__name__, solution, "").graph.with_functions({n: made[n] for n in sides})
-        given = _samples(exercise.EXERCISE.given)
+        graph = known.with_functions({n: made[n] for n in sides})
         with np.errstate(all="ignore"):
             found = graph.evaluate([*sides], {n: v for n, v in given.items() if n in graph.leaves})
         lengths = np.array([np.broadcast_to(found[name], _SAMPLES) for name in sides])

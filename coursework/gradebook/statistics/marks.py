@@ -14,7 +14,7 @@ import numpy as np
 
 from coursework.errors import BadInput, counted
 from coursework.gradebook.columns import PRESENCE, SITTING, VERDICTS
-from coursework.gradebook.presence import ABSENT, EXCUSED
+from coursework.gradebook.presence import AWAY
 from coursework.messages import Message
 from coursework.system.links import check_inside
 from coursework.system.tables import as_written, delimiter_of, duplicate_column, open_csv
@@ -216,7 +216,7 @@ def _summary(path: Path, decimals: _Decimals) -> dict[str, StudentSummary]:
     away = dict(_lines(path, ("student", PRESENCE))) if PRESENCE in _header(path) else {}
     return {
         name: StudentSummary(
-            out_of, round(missing), unreadable.strip() not in ("", "0"), away.get(name) in (ABSENT, EXCUSED)
+            out_of, round(missing), unreadable.strip() not in ("", "0"), away.get(name) in AWAY
         )
         for name, unreadable, out_of, missing in _lines(path, _SUMMARY, decimals)
     }

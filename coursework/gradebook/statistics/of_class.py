@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator, Mapping
 
 from coursework.gradebook.book import Result
 from coursework.gradebook.graded_sheet import Graded
-from coursework.gradebook.presence import ABSENT, EXCUSED
+from coursework.gradebook.presence import AWAY
 from coursework.gradebook.statistics.marks import Line, Marks, StudentSummary, marks_of
 
 
@@ -15,7 +15,7 @@ def marks_of_class(
 ) -> Marks:
     """Return the columns of a class; for a student with several sittings only those of the one that
     counts."""
-    text = {s: _summary_of(result, presence.get(s) in (ABSENT, EXCUSED)) for s, result in results.items()}
+    text = {s: _summary_of(result, presence.get(s) in AWAY) for s, result in results.items()}
     return marks_of(_lines(graded, results), text, rejected)
 
 
