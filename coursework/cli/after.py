@@ -399,7 +399,7 @@ def _tell_cards(exam: Exam) -> None:
     print_table(
         [
             {
-                texts["number"]: exam.number(group.exercise, group.part),
+                texts["number"]: exam.questions.label(group.exercise, group.part),
                 texts["look"]: texts["cards_by"][group.why],
                 texts["answer"]: one_line(members[0].mark.answer)[:60],
                 texts["answers"]: len(members),

@@ -200,13 +200,15 @@ def _change(change: Change) -> str:
 
 
 def written_marks(context: click.Context, url: str, name: str, folder: Path, decimal: str) -> None:
-    """Write the marks of an assignment as they stand into a folder, for a report to read."""
+    """Write the marks of an assignment as they stand into a folder, and beside it what was issued, for a
+    report to read."""
     course = opened(context)
     store = store_at(context, url)
-    from coursework.database.assignments import assignment_called
+    from coursework.database.assignments import assignment_called, issued_content
     from coursework.database.grading import write_standing
     from coursework.database.marking import Work
-    from coursework.system.tables import SPREADSHEETS
+    from coursework.system.tables import SPREADSHEETS, json_text
+    from coursework.system.writing import write_whole
 
     with store.reading() as connection:
         number = assignment_called(connection, name)
@@ -221,6 +223,9 @@ def written_marks(context: click.Context, url: str, name: str, folder: Path, dec
             ]
         )
     write_standing(course, store, work, folder, feedback=False, spreadsheet=SPREADSHEETS[decimal])
+    with store.reading() as connection:
+        content = issued_content(connection, number)
+    write_whole(folder.parent / "issued.json", json_text(content).encode())
 
 
 # --------------------------------------------------------------------- database

@@ -426,8 +426,8 @@ def report(
     from coursework.cli.database import written_marks
 
     with TemporaryDirectory() as temporary:
-        written_marks(context, db, assignment, Path(temporary), decimal)
-        _report(context, Path(temporary), lang, out, decimal, as_json)
+        written_marks(context, db, assignment, Path(temporary) / "marks", decimal)
+        _report(context, Path(temporary) / "marks", lang, out, decimal, as_json)
 
 
 def _report(
@@ -457,7 +457,7 @@ def _report(
     target = out or folder / "report"
     if out is not None or not as_json:
         writes(context, target)
-        _write_report(course, measures, lang, target, decimal)
+        _write_report(course, folder, measures, lang, target, decimal)
         _tell_alike(folder, target, decimal)
     if not as_json:
         say(
@@ -488,16 +488,22 @@ def _tell_alike(folder: Path, out: Path, decimal: str) -> None:
     )
 
 
-def _write_report(course: Course, measures: Any, lang: str, out: Path, decimal: str) -> None:
+def _write_report(course: Course, folder: Path, measures: Any, lang: str, out: Path, decimal: str) -> None:
     """Everything is made before the first file is written."""
+    from coursework.gradebook.class_points import issued_near
     from coursework.gradebook.statistics import measures as statistics
     from coursework.gradebook.statistics import page as statistics_page
+    from coursework.issuing.issued import Issued
+    from coursework.issuing.questions import PaperQuestions
     from coursework.rendering.renderer import renderer_of
     from coursework.system.processes import Task, in_turn, is_shared
     from coursework.system.tables import SPREADSHEETS, csv_file
     from coursework.system.writing import write_whole
 
-    page, renderer = statistics_page.report(course, measures, lang), renderer_of(course.folder)
+    content = issued_near(folder / "marks.csv")
+    questions = PaperQuestions.of(course, Issued(content, "issued.json")) if content else None
+    page = statistics_page.report(course, measures, lang, questions)
+    renderer = renderer_of(course.folder)
     spreadsheet = SPREADSHEETS[decimal]
     mistakes = statistics_page.mistake_rows(course, measures, lang)
     pages = [

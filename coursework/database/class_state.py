@@ -18,7 +18,6 @@ from coursework.gradebook.decisions import Decisions
 from coursework.gradebook.graded_sheet import Graded
 from coursework.gradebook.placing import SheetKey, Sheets
 from coursework.gradebook.presence import presence_on_roster
-from coursework.gradebook.questions import drawn_questions, numbers_on_papers, questions_of
 from coursework.gradebook.rows import TITLES, Rejected
 from coursework.gradebook.waiting import (
     SHOWN_ON_REQUEST,
@@ -32,6 +31,7 @@ from coursework.gradebook.waiting import (
     undecided,
 )
 from coursework.issuing.issued import Issued
+from coursework.issuing.questions import PaperQuestions
 from coursework.issuing.students import namesakes
 from coursework.messages import localised
 
@@ -245,22 +245,9 @@ class ClassState:
     # ----------------------------------------------------------------- questions
 
     @cached_property
-    def questions(self) -> tuple[tuple[str, str], ...]:
-        """Exercise and part of every question that was issued, in the order of the sheets."""
-        return questions_of(self.course, self.issued)
-
-    @cached_property
-    def drawn(self) -> frozenset[tuple[str, str]]:
-        """Questions that are answered by a drawing."""
-        return drawn_questions(self.course, self.issued)
-
-    @cached_property
-    def _numbers_on_papers(self) -> dict[tuple[str, str], str]:
-        return numbers_on_papers(self.questions, self.issued)
-
-    def number(self, exercise: str, part: str) -> str:
-        """Return the number of a question on the papers, such as ``2.3``."""
-        return self._numbers_on_papers[exercise, part]
+    def questions(self) -> PaperQuestions:
+        """Questions of the papers, with their numbers."""
+        return PaperQuestions.of(self.course, self.issued, on_papers=True)
 
     # ------------------------------------------------------------------- waiting
 
@@ -278,7 +265,7 @@ class ClassState:
         return self._grouped(graded for graded in self.machine.values() if self.matters(graded))
 
     def _grouped(self, sheets: Iterable[Graded]) -> list[AnswerGroup]:
-        return groups(sheets, self.measures, self.questions, self.drawn)
+        return groups(sheets, self.measures, self.questions, self.course)
 
     @cached_property
     def measures(self) -> dict[SheetOfStudent, Measure]:

@@ -16,9 +16,9 @@ from coursework.course.marking_rules import DIGITS_KEPT
 from coursework.errors import BadInput, nearest
 from coursework.gradebook.decision import Decision
 from coursework.gradebook.graded_sheet import Graded
-from coursework.gradebook.questions import Question as Question
 from coursework.gradebook.scale import USUAL_SCALE, exact
 from coursework.issuing.issued import Issued
+from coursework.issuing.questions import Question as Question
 from coursework.language.numbers import typed_number
 from coursework.language.words import words
 from coursework.marking.mark import Mark

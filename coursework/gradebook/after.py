@@ -33,7 +33,6 @@ from coursework.gradebook.decision import new_id
 from coursework.gradebook.decisions import ACCEPTED, GIVEN, WITHDRAWN, Decision, Decisions, check_steps
 from coursework.gradebook.graded_sheet import Graded
 from coursework.gradebook.presence import ABSENT, EXCUSED, PRESENT
-from coursework.gradebook.questions import drawn_questions, numbers_on_papers, questions_of
 from coursework.gradebook.rows import Rejected
 from coursework.gradebook.scale import USUAL_SCALE, mark_on
 from coursework.gradebook.statistics.alike import alike_lines
@@ -54,6 +53,7 @@ from coursework.gradebook.waiting import (
 )
 from coursework.issuing.assignment import Assignment
 from coursework.issuing.issued import Issued
+from coursework.issuing.questions import PaperQuestions
 from coursework.issuing.students import folded
 from coursework.issuing.variant_assignment import with_points
 from coursework.language.words import languages, words
@@ -260,27 +260,9 @@ class Exam:
         return dict(zip(keys, measures(self.course, self.issued, self.machine), strict=True))
 
     @cached_property
-    def questions(self) -> tuple[Question, ...]:
-        return questions_of(self.course, self.issued)
-
-    def number(self, exercise: str, part: str) -> str:
-        """Return the number of a question on the papers, such as ``2.3``."""
-        return self._numbers_on_papers[exercise, part]
-
-    def label(self, exercise: str, part: str) -> str:
-        """Return the number of a question, with its part where other papers ask another question of this
-        number."""
-        number = self.number(exercise, part)
-        is_shared = [*self._numbers_on_papers.values()].count(number) > 1
-        return f"{number} {part}" if is_shared else number
-
-    @cached_property
-    def _numbers_on_papers(self) -> dict[Question, str]:
-        return numbers_on_papers(self.questions, self.issued)
-
-    def exercise_number(self, exercise: str) -> str:
-        """Return the number of an exercise on the papers; empty for one that they do not have."""
-        return next((self.number(*one).partition(".")[0] for one in self.questions if one[0] == exercise), "")
+    def questions(self) -> PaperQuestions:
+        """Questions of the papers, with their numbers."""
+        return PaperQuestions.of(self.course, self.issued, on_papers=True)
 
     @cached_property
     def kinds(self) -> dict[str, list[Question]]:
@@ -302,11 +284,10 @@ class Exam:
             There are none.
         """
         asked, kind_names = name.strip(), words(lang)["after"]["sorts"]
-        found = [one for one in self.questions if asked in ("/".join(one), self.number(*one))]
-        found = found or [one for one in self.questions if asked in self.number(*one).split("/")]
-        if found:
+        if found := [one for one in self.questions if asked == "/".join(one)] or self.questions.called(asked):
             return found
-        found = [one for one in self.questions if asked in (one[0], self.exercise_number(one[0]))]
+        places = {name: self.questions.exercise_number(name) for name, _ in self.questions}
+        found = [one for one in self.questions if asked in (one[0], places[one[0]])]
         for kind, questions in self.kinds.items():
             if folded(asked) in (folded(kind), folded(kind_names.get(kind, kind))):
                 found = questions
@@ -314,8 +295,8 @@ class Exam:
             raise BadInput(
                 "no question {name!r}: the papers have {first} to {last}, and the kinds {kinds}",
                 name=name[:40],
-                first=self.number(*self.questions[0]) if self.questions else "",
-                last=self.number(*self.questions[-1]) if self.questions else "",
+                first=next(iter(self.questions.values()), ""),
+                last=next(reversed(self.questions.values()), ""),
                 kinds=", ".join(self.kinds) or "–",
             )
         return found
@@ -323,8 +304,7 @@ class Exam:
     @cached_property
     def open(self) -> list[tuple[AnswerGroup, tuple[AnswerToReview, ...]]]:
         """Groups of answers to review, each with those of its answers on which nobody has decided."""
-        drawn = drawn_questions(self.course, self.issued)
-        found = groups(self.machine, self.measures, self.questions, drawn)
+        found = groups(self.machine, self.measures, self.questions, self.course)
         current = {sheet_of_student(graded): graded for graded in self.adjusted}
         return [
             one for one in undecided(found, self.decisions, current) if one[0].why not in SHOWN_ON_REQUEST
@@ -401,10 +381,11 @@ class Exam:
         """Patterns of sheets that a person should look at."""
         by_kind: dict[str, dict[str, list[str]]] = {kind: {} for kind in PATTERNS}
         for graded in self.machine:
+            numbers = self.questions.on_paper(graded.exercise, graded.lines)
             for part, line in graded.lines.items():
                 if kind := _pattern(line):
                     places = by_kind[kind].setdefault(graded.student, [])
-                    places.append(self.number(graded.exercise, part))
+                    places.append(numbers[part])
         lines = (
             (graded.student, graded.exercise, str(graded.seed), part, line.read_as, line.verdict)
             for graded in self.decided
@@ -451,7 +432,7 @@ class Exam:
         why, proposal = ("", None) if status or statistics is None else self._proposal(question, statistics)
         return ExamQuestion(
             *question,
-            self.number(*question),
+            self.questions[question],
             float(part["points"]),
             adjustments.worth(question[0], part),
             status,

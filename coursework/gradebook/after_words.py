@@ -71,20 +71,22 @@ def error_text(exam: Exam, exercise: str, verdict: str, lang: str) -> str:
         return told
     asked = [exercise] if exercise else exam.issued.exercises
     kind = "slip" if family == "follow_through" else family
-    says = (Names(exam.course, None, lang).mistake(_PricedError(one, kind, name), _LONGEST) for one in asked)
+    says = (Names(exam.course, lang).mistake(_PricedError(one, kind, name), _LONGEST) for one in asked)
     return f"{told}{words(lang)['sheet']['colon']} {next((text for text in says if text != name), name)}"
 
 
 def _place(exam: Exam, steps: Sequence[Decision], lang: str) -> str:
     texts, step = words(lang)["after"]["places"], steps[0]
     numbers = [
-        exam.label(one.exercise, one.part) for one in steps if (one.exercise, one.part) in exam.questions
+        exam.questions.label(one.exercise, one.part)
+        for one in steps
+        if (one.exercise, one.part) in exam.questions
     ]
     if numbers:
         more = [] if len(numbers) <= _NUMBERS else [f"… ({len(numbers)})"]
         name = "question" if len(numbers) == 1 else "questions"
         return str(texts[name]).format(", ".join([*numbers[:_NUMBERS], *more]))
-    number = exam.exercise_number(step.exercise)
+    number = exam.questions.exercise_number(step.exercise)
     return str(texts["exercise"]).format(number) if number else str(step.exercise or texts["everywhere"])
 
 

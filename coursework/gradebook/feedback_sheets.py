@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import datetime
 import shutil
-from collections.abc import Callable, Collection, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
 from pathlib import Path
@@ -154,23 +154,25 @@ def feedback_paper(
     sitting = graded[0].sitting if graded else 1
     by_exercise = {g.exercise: g._replace(record={**g.record, "lang": lang}) for g in graded}
     blank = _blank(course, issued, student, sitting, lang)
-    sheets, left_out = [], 0.0
-    for exercise in map(str, stated.get("exercises", issued.exercises)):
+    sheets, left_out = {}, 0.0
+    for place, exercise in enumerate(map(str, stated.get("exercises", issued.exercises)), start=1):
         graded_sheet = by_exercise.get(exercise) or (None if exercise in waiting else blank(exercise))
         if graded_sheet is None:
             left_out += _worth(issued, exercise)
         else:
             shows_answers = stated.get("answers") != "never"
-            sheets.append(feedback_sheet(course, graded_sheet, answers=shows_answers, telling=telling))
-    points, out_of = sum(s.points for s in sheets), sum(s.out_of for s in sheets) + left_out
+            sheets[place] = feedback_sheet(course, graded_sheet, answers=shows_answers, telling=telling)
+    points = sum(s.points for s in sheets.values())
+    out_of = sum(s.out_of for s in sheets.values()) + left_out
     return FeedbackPaper(
         heading_of(course, issued, student, sitting, lang),
-        tuple(sheets),
+        tuple(sheets.values()),
         points,
         out_of,
         localise(mark_of(issued, points, out_of), lang),
         stated.get("answers") != "never",
         tuple(_advice(sheets, set(by_exercise), lang)),
+        places=tuple(sheets),
         open=sum(graded_sheet.open for graded_sheet in graded) + len(waiting),
     )
 
@@ -239,17 +241,17 @@ def heading_of(course: Course, issued: Issued, student: str, sitting: int, lang:
     )
 
 
-def _advice(sheets: Sequence[FeedbackSheet], handed_in: Collection[str], lang: str) -> Iterator[str]:
+def _advice(sheets: Mapping[int, FeedbackSheet], handed_in: Collection[str], lang: str) -> Iterator[str]:
     """Yield the questions, and the exercises not submitted, in which most points can still be gained."""
     texts = words(lang)["feedback"]
     places: list[tuple[float, float, str]] = []
-    for position, sheet in enumerate(sheets, start=1):
+    for place, sheet in sheets.items():
         if sheet.handout.exercise not in handed_in:
             places.append((0.0, sheet.out_of, sheet.handout.title))
             continue
         for line in sheet.lines:
             if line.verdict not in WAITING:
-                number = f"{position}.{line.question.number}"  # as papers number their questions
+                number = f"{place}.{line.question.number}"  # as papers number their questions
                 name = texts["advised"].format(exercise=sheet.handout.title, number=number)
                 symbol = f", ${line.question.symbol}$" if line.question.symbol else ""
                 places.append((line.points, line.out_of, name + symbol))

@@ -21,6 +21,7 @@ from coursework.gradebook.class_marking import rules_of
 from coursework.gradebook.decisions import Decisions
 from coursework.gradebook.graded_sheet import Graded
 from coursework.issuing.issued import Issued
+from coursework.issuing.questions import PaperQuestions, Question
 from coursework.marking.margins import half_widths_off
 from coursework.marking.mark import Mark
 from coursework.parsing.spelling import plain_spelling, unwrapped
@@ -126,14 +127,12 @@ def _known(margins: Mapping[str, float | None]) -> dict[str, float]:
 def groups(
     graded: Iterable[Graded],
     measured: Mapping[SheetOfStudent, Measure],
-    order: Sequence[tuple[str, str]],
-    drawn: frozenset[tuple[str, str]] = frozenset(),
+    questions: PaperQuestions,
+    course: Course,
 ) -> list[AnswerGroup]:
-    """Return the answers that may be reviewed, question by question in ``order`` (exercise and part), then by
-    reason, the largest groups first.
-
-    ``drawn`` are the questions that are answered by a drawing.
-    """
+    """Return the answers that may be reviewed, question by question, then by reason, the largest groups
+    first."""
+    drawn = _drawn(course, questions)
     members_by_key: dict[tuple[str, ...], list[AnswerToReview]] = {}
     answered: dict[tuple[str, str], set[str]] = {}
     for graded_sheet in graded:
@@ -146,7 +145,7 @@ def groups(
                 members_by_key.setdefault(key, []).append(
                     AnswerToReview(graded_sheet, mark, measure.margins.get(part))
                 )
-    positions = {question: number for number, question in enumerate(order)}
+    positions = {question: number for number, question in enumerate(questions)}
     answer_groups = [
         _group(key, members) for key, members in members_by_key.items() if _waits(key, members, answered)
     ]
@@ -158,6 +157,16 @@ def groups(
             -len(g.members),
         ),
     )
+
+
+def _drawn(course: Course, questions: PaperQuestions) -> frozenset[Question]:
+    """Return the questions that are answered by a drawing."""
+    parts = {
+        question: course[question[0]].spec.part(question[1])
+        for question in questions
+        if question[0] in course
+    }
+    return frozenset(q for q, part in parts.items() if part and part.sort.box in ("blank", "millimetre"))
 
 
 def undecided(
@@ -196,7 +205,7 @@ def _is_made_good(answer: AnswerToReview, now: Graded) -> bool:
 
 
 def key_of(
-    graded: Graded, mark: Mark, measure: Measure, drawn: frozenset[tuple[str, str]]
+    graded: Graded, mark: Mark, measure: Measure, drawn: frozenset[Question]
 ) -> tuple[str, ...] | None:
     """Return the common values of the answers of one group, beginning with the reason for a review; None for
     an answer that nobody reviews."""

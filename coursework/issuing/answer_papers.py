@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
-from coursework.issuing.issued import codes_shown
+from coursework.issuing.issued import codes_shown, items_of_papers
 from coursework.sheets.answer_pages import SIZES, AnswerPage, answer_pages, paper_code
 
 if TYPE_CHECKING:
@@ -56,21 +56,11 @@ def answer_papers(issued: Mapping[str, Any]) -> dict[str, AnswerPaper]:
 
 
 def _papers(issued: Mapping[str, Any], size: str) -> Iterator[AnswerPaper]:
-    assignment = issued.get("assignment")
-    if assignment is None:
-        for item in issued["issued"]:
-            yield AnswerPaper("", *_owner_of(item), (item["record"],), size)
-        return
-    together: dict[tuple[str, int, int], list[Mapping[str, Any]]] = {}
-    for number, item in enumerate(issued["issued"]):
-        student, sitting = _owner_of(item)
-        # Papers without a name follow each other, each with the exercises of the assignment.
-        nobody = -1 if student else number // max(1, len(assignment["exercises"]))
-        together.setdefault((student, sitting, nobody), []).append(item["record"])
-    codes = codes_shown(issued)
-    for (student, sitting, _), records in together.items():
-        shown = codes.get(student, student)
-        yield AnswerPaper(str(assignment["name"]), shown, sitting, tuple(records), size, student)
+    name, codes = str((issued.get("assignment") or {}).get("name", "")), codes_shown(issued)
+    for items in items_of_papers(issued):
+        student, sitting = _owner_of(items[0])
+        shown, records = codes.get(student, student), tuple(item["record"] for item in items)
+        yield AnswerPaper(name, shown, sitting, records, size, student)
 
 
 def _owner_of(item: Mapping[str, Any]) -> tuple[str, int]:

@@ -13,9 +13,10 @@ from coursework.issuing import booklets
 from coursework.issuing.assignment import Assignment
 from coursework.issuing.attendance import list_files
 from coursework.issuing.booklets import Booklet
-from coursework.issuing.issued import COLUMNS, form_rows, issued_content, key_content, key_rows
+from coursework.issuing.issued import CODES, COLUMNS, Issued, form_rows, issued_content, key_content, key_rows
 from coursework.issuing.issuing import Issue
 from coursework.issuing.papers import IssuedPaper, papers
+from coursework.issuing.questions import PaperQuestions
 from coursework.issuing.students import file_stems
 from coursework.issuing.wide_form import wide_form
 from coursework.rendering.renderer import Renderer, renderer_of
@@ -102,7 +103,8 @@ def tables(
     yield File(Path("issued.json"), _text(lambda: json_text(content)))
     yield File(Path("answers.csv"), lambda: csv_file(form_rows(issues), COLUMNS, spreadsheet))
     if assignment is not None:
-        columns, rows = wide_form(issues, assignment.identity)
+        questions, codes = PaperQuestions.of(course, Issued(content, "what is issued")), content.get(CODES)
+        columns, rows = wide_form(course, content, questions, assignment.identity, codes)
         yield File(Path("answers_wide.csv"), lambda: csv_file(rows, columns, spreadsheet))
     yield from key_files(issues, spreadsheet)
 

@@ -533,6 +533,20 @@ def _item(issue: Issue) -> dict[str, Any]:
     return {"student": issue.student, **sitting, **version, "record": issue.variant.record}
 
 
+def items_of_papers(content: Mapping[str, Any]) -> list[list[Mapping[str, Any]]]:
+    """Return the items of an ``issued.json`` paper by paper: an exercise alone if there is no assignment.
+
+    Papers without a name follow each other, each with the exercises of the assignment.
+    """
+    exercises = (content.get("assignment") or {}).get("exercises")
+    papers: dict[tuple[Any, ...], list[Mapping[str, Any]]] = {}
+    for number, item in enumerate(content["issued"]):
+        owner = str(item.get("student", "")), int(item.get("sitting", 1))
+        one = number if exercises is None else -1 if owner[0] else number // max(1, len(exercises))
+        papers.setdefault((*owner, one), []).append(item)
+    return list(papers.values())
+
+
 def plain_value(value: Any) -> Any:
     """Return a quantity as JSON: an array as lists, a complex number as the text ``3+4j``, which is also a
     valid answer."""

@@ -22,7 +22,7 @@ from coursework.errors import BadInput, counted, nearest
 from coursework.issuing.assignment import AskedExercise, Assignment
 from coursework.issuing.exam_columns import room_of, seat_of
 from coursework.issuing.flaws import try_judges
-from coursework.issuing.issued import CODES, secret_of
+from coursework.issuing.issued import CODES, items_of_papers, secret_of
 from coursework.issuing.issuing import Issue, check_languages, drawn_by, reservations, whose_languages
 from coursework.issuing.roster import Student
 from coursework.issuing.students import file_stems, folded, student_named
@@ -140,7 +140,6 @@ class _Assigner:
         self.notes: list[str] = []
         self.secret = assignment.secret or secret_of(before) or secret
         self.is_new = False
-        self._items = list((before or {}).get("issued", ()))
         self._columns = dict((before or {}).get("students", {}))
         self._codes: Mapping[str, str] = (before or {}).get(CODES) or {}
         self._unnamed: dict[int, str] = {}
@@ -159,13 +158,12 @@ class _Assigner:
         self._records: dict[tuple[str, str, int], Mapping[str, Any]] = {}
         self._letters: dict[str, str] = {}
         self._sittings: dict[str, int] = {}
-        for number, item in enumerate(self._items):
-            name = str(item.get("student", "")) or f"#{number // max(1, len(assignment.names))}"
-            key = name, str(item["record"]["exercise"]), int(item.get("sitting", 1))
-            self._records[key] = item["record"]
-            self._sittings[name] = max(key[2], self.sittings(name))
-            if item.get("version"):
-                self._letters[name] = str(item["version"])
+        for number, items in enumerate(items_of_papers(before or {"issued": ()})):
+            name, sitting = str(items[0].get("student", "")) or f"#{number}", int(items[0].get("sitting", 1))
+            self._records |= {(name, str(i["record"]["exercise"]), sitting): i["record"] for i in items}
+            self._sittings[name] = max(sitting, self.sittings(name))
+            if version := items[0].get("version"):
+                self._letters[name] = str(version)
 
     @property
     def _key(self) -> Secret:

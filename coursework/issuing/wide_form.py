@@ -2,67 +2,63 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass, field
+from collections.abc import Mapping, Sequence
 from typing import Any
 
-from coursework.issuing.issued import NOT_ASKED, by_code
-from coursework.issuing.issuing import Issue
+from coursework.course.course import Course
+from coursework.issuing.issued import NOT_ASKED, items_of_papers
+from coursework.issuing.questions import PaperQuestions, Question
 from coursework.issuing.students import folded
 from coursework.sheets.units import units_text
 
 
 def wide_form(
-    issues: Sequence[Issue], identity: Sequence[str] = ()
+    course: Course[Any],
+    content: Mapping[str, Any],
+    questions: PaperQuestions,
+    identity: Sequence[str] = (),
+    codes: Mapping[str, str] | None = None,
 ) -> tuple[list[str], list[dict[str, Any]]]:
     """Return the columns and the rows of ``answers_wide.csv``, which :mod:`coursework.gradebook.wide_answers`
-    reads.
+    reads, for the papers of an ``issued.json``.
 
     A column is titled by the number of its question on the papers, all its numbers if these differ, the
     exercise, the part and the unit. What a paper does not ask is dashed on its line. ``identity`` names
-    columns of the roster by which a person finds a line.
+    columns of the roster by which a person finds a line; ``codes`` stand in place of the names.
     """
-    issues, identity = by_code(issues), () if any(issue.code for issue in issues) else identity
-    needs_seeds = any(not issue.student or issue.sitting > 1 for issue in issues)
-    papers: dict[tuple[str, int], dict[str, Any]] = {}
-    on_paper: dict[tuple[str, int], list[str]] = {}  #: exercises of each paper, in their order
-    exercises: dict[str, dict[str, _Column]] = {}  #: by part
-    for issue in issues:
-        name, paper = issue.variant.exercise.name, (issue.stem, issue.sitting)
-        if paper not in papers:
-            cells = {folded(t): value for t, value in issue.columns.items()}
-            papers[paper] = {t: cells.get(folded(t), "") for t in identity}
-            papers[paper] |= {"student": issue.shown, "version": issue.version}
-        papers[paper][f"{name} seed"] = issue.variant.seed
-        order = on_paper.setdefault(paper, [])
-        order += [] if name in order else [name]
-        for number, part in enumerate(issue.variant.parts, 1):
-            column = exercises.setdefault(name, {}).get(part.id)
-            if column is None:
-                unit = units_text(part, issue.langs[0], issue.variant)
-                column = exercises[name][part.id] = _Column(
-                    f"{name} {part.id}" + (f" ({unit})" if unit else "")
-                )
-            column.numbers.add((order.index(name) + 1, number))
-            column.papers.add(paper)
-    columns = ["student", *identity, *(["version"] if any(issue.version for issue in issues) else [])]
-    for name, asked in exercises.items():
-        columns += [f"{name} seed"] if needs_seeds else []
-        for column in sorted(asked.values(), key=lambda column: min(column.numbers)):
-            columns.append(column.title)
-            for paper in papers.keys() - column.papers:
-                papers[paper][column.title] = NOT_ASKED
-    return columns, [{**dict.fromkeys(columns, ""), **row} for row in papers.values()]
+    papers, codes = items_of_papers(content), codes or {}
+    if codes:
+        papers.sort(key=lambda items: (codes.get(items[0]["student"], ""), items[0].get("sitting", 1)))
+        identity = ()
+    asking: dict[Question, Mapping[str, Any]] = {}  #: a record of each question
+    rows: list[dict[str, Any]] = []
+    asked: list[set[Question]] = []
+    for items in papers:
+        student = str(items[0].get("student", ""))
+        cells = {folded(t): value for t, value in content.get("students", {}).get(student, {}).items()}
+        rows.append({t: cells.get(folded(t), "") for t in identity})
+        rows[-1] |= {"student": codes.get(student, student), "version": items[0].get("version", "")}
+        asked.append(set())
+        for record in (item["record"] for item in items):
+            rows[-1][f"{record['exercise']} seed"] = record["seed"]
+            on_paper = {(str(record["exercise"]), str(part["id"])) for part in record["parts"]}
+            asked[-1] |= on_paper
+            asking |= dict.fromkeys(on_paper - asking.keys(), record)
+    columns = ["student", *identity, *(["version"] if any(row["version"] for row in rows) else [])]
+    needs_seeds = any(not items[0].get("student") or items[0].get("sitting", 1) > 1 for items in papers)
+    for question in (question for question in questions if question in asking):
+        if needs_seeds and (seed := f"{question[0]} seed") not in columns:
+            columns.append(seed)
+        columns.append(
+            f"{questions[question]} {' '.join(question)}{_unit(course, question, asking[question])}"
+        )
+        for row, on_paper in zip(rows, asked, strict=True):
+            row[columns[-1]] = "" if question in on_paper else NOT_ASKED
+    return columns, [{column: row.get(column, "") for column in columns} for row in rows]
 
 
-@dataclass
-class _Column:
-    """Column of a question: its numbers on the papers, and the papers that ask it."""
-
-    name: str
-    numbers: set[tuple[int, int]] = field(default_factory=set)
-    papers: set[tuple[str, int]] = field(default_factory=set)
-
-    @property
-    def title(self) -> str:
-        return "/".join(f"{place}.{number}" for place, number in sorted(self.numbers)) + f" {self.name}"
+def _unit(course: Course[Any], question: Question, record: Mapping[str, Any]) -> str:
+    variant = course[question[0]].from_record(record)
+    part = next(part for part in variant.parts if part.id == question[1])
+    unit = units_text(part, variant.lang, variant)
+    return f" ({unit})" if unit else ""

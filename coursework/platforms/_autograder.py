@@ -19,11 +19,11 @@ from coursework.course.variant import Variant
 from coursework.errors import BadInput, CourseworkError
 from coursework.gradebook.by_student import OwnMarks, for_student, marks_of_student
 from coursework.gradebook.feedback_sheets import feedback_sheet
-from coursework.gradebook.graded_sheet import Graded
 from coursework.gradebook.rows import AnswerRow, PlatformFile, Rejected
 from coursework.gradebook.scale import mark_of
 from coursework.gradebook.submissions import find, read_file
 from coursework.issuing.issued import Issued
+from coursework.issuing.questions import PaperQuestions
 from coursework.language.numbers import localise
 from coursework.language.words import languages, words
 from coursework.markup.markdown import plain_line
@@ -159,15 +159,16 @@ def _time(value: Any) -> datetime | None:
 def _results(course: Course[Variant], issued: Issued, own_marks: OwnMarks, notes: Sequence[str]) -> Results:
     lang = str(own_marks.sheets[0].record.get("lang", "fr"))
     shows = (issued.assignment or {}).get("answers") == "shown"
-    sheets = [(graded, feedback_sheet(course, graded, answers=shows)) for graded in own_marks.sheets]
-    several = len(sheets) > 1
+    sheets = [feedback_sheet(course, graded, answers=shows) for graded in own_marks.sheets]
+    questions = PaperQuestions.of(course, issued)
+    prefixes = {name: f"{place}." for name, _ in questions if (place := questions.exercise_number(name))}
     tests = [
-        _test(graded, sheet, line, f"{number}." if several else "")
-        for number, (graded, sheet) in enumerate(sheets, start=1)
+        _test(sheet, line, prefixes.get(sheet.handout.exercise, ""))
+        for sheet in sheets
         for line in sheet.lines
     ]
     points, out_of = sum(g.points for g in own_marks.sheets), sum(g.out_of for g in own_marks.sheets)
-    if shows and (right := list(_right(sheets, lang, several=several))):
+    if shows and (right := list(_right(sheets, lang, prefixes))):
         title = words(lang)["gradescope"]["right"]
         tests.append({"name": title, "output": "\n".join(right), "visibility": "after_published"})
     output = [*notes, *_rejected(own_marks, lang), *own_marks.notes]
@@ -185,7 +186,7 @@ def _results(course: Course[Variant], issued: Issued, own_marks: OwnMarks, notes
     }
 
 
-def _test(graded: Graded, sheet: FeedbackSheet, line: FeedbackLine, prefix: str) -> dict[str, Any]:
+def _test(sheet: FeedbackSheet, line: FeedbackLine, prefix: str) -> dict[str, Any]:
     """Return the entry of a question."""
     lang, question = sheet.handout.lang, line.question
     number = f"{prefix}{question.number}"
@@ -210,12 +211,12 @@ def _test(graded: Graded, sheet: FeedbackSheet, line: FeedbackLine, prefix: str)
     }
 
 
-def _right(sheets: Iterable[tuple[Graded, FeedbackSheet]], lang: str, *, several: bool) -> Iterator[str]:
+def _right(sheets: Iterable[FeedbackSheet], lang: str, prefixes: Mapping[str, str]) -> Iterator[str]:
     """Yield the right answers, which Gradescope shows after the staff publish the grades."""
-    for number, (_, sheet) in enumerate(sheets, start=1):
+    for sheet in sheets:
         for line in sheet.lines:
             if line.right:
-                prefix = f"{number}." if several else ""
+                prefix = prefixes.get(sheet.handout.exercise, "")
                 yield f"{prefix}{line.question.number} {plain_line(line.right, lang)}"
 
 

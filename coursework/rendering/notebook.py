@@ -94,6 +94,7 @@ def feedback(folders: Sequence[Path], feedback_sheet: FeedbackSheet | FeedbackPa
     if isinstance(feedback_sheet, FeedbackPaper):
         env = _environment(tuple(folders), feedback_sheet.heading.lang)
         names = papers.context(feedback_sheet, "md.j2", partial(render, env))
+        figure_names = [f"{place}-" for place in papers.places_of(feedback_sheet)]
         sheets, template, student = (
             feedback_sheet.sheets,
             "paper/feedback.md.j2",
@@ -101,7 +102,7 @@ def feedback(folders: Sequence[Path], feedback_sheet: FeedbackSheet | FeedbackPa
         )
     else:
         env = _environment(tuple(folders), feedback_sheet.handout.lang)
-        names = own.context(feedback_sheet, "md.j2", partial(render, env))
+        names, figure_names = own.context(feedback_sheet, "md.j2", partial(render, env)), [""]
         sheets, template, student = (
             (feedback_sheet,),
             "feedback/feedback.md.j2",
@@ -110,11 +111,9 @@ def feedback(folders: Sequence[Path], feedback_sheet: FeedbackSheet | FeedbackPa
     seeds = " ".join(f"{sheet.handout.exercise} {sheet.handout.seed}" for sheet in sheets)
     cells = list(_cells(render(env, template, names), f"feedback {student} {seeds}"))
     for cell in cells:
-        for number, sheet in enumerate(sheets, start=1):
+        for figures, sheet in zip(figure_names, sheets, strict=True):
             if sheet.solution is not None:
-                _attach_figure(
-                    cell, sheet.solution, f"{number}-" if isinstance(feedback_sheet, FeedbackPaper) else ""
-                )
+                _attach_figure(cell, sheet.solution, figures)
     return _json(cells, {"feedback": seeds, "student": student, "lang": names["lang"]})
 
 

@@ -53,6 +53,12 @@ def sheets_of(paper: AnyPaper) -> tuple[views.Sheet, ...]:
     return paper.sheets
 
 
+def places_of(paper: AnyPaper) -> Sequence[int]:
+    """Return the numbers of its exercises, in order."""
+    stated = paper.places if isinstance(paper, FeedbackPaper) else ()
+    return stated or range(1, len(sheets_of(paper)) + 1)
+
+
 def points_of(paper: AnyPaper) -> float:
     """Return the total points of a paper."""
     if isinstance(paper, FeedbackPaper):
@@ -105,18 +111,18 @@ def exercises_of(paper: AnyPaper, end: str, write: Body, files: Sequence[Names] 
     """Return the variables of each exercise's sheet and its body; of a solution its rows of the marking guide
     too."""
     exercises = []
-    for number, sheet in enumerate(sheets_of(paper), 1):
+    for position, (number, sheet) in enumerate(zip(places_of(paper), sheets_of(paper), strict=True)):
         names: dict[str, Any]
         if isinstance(sheet, FeedbackSheet):
             names = feedback.context(sheet, end, write, number, numbered=_numbered(paper))
         else:
             names = views.context(sheet, number)
-        names |= dict(files[number - 1] if files else {})
+        names |= dict(files[position] if files else {})
         handout = views.handout_of(sheet)
         names["called"] = _heading_of(paper, number, handout.title)
         names["whose"] = f"{words(paper.heading.lang)['paper']['exercise']} {number}"
         names["start_mm"] = _start_mm(sheet)
-        names["work_mm"] = paper.work_mm[number - 1] if isinstance(paper, Paper) and paper.work_mm else 0
+        names["work_mm"] = paper.work_mm[position] if isinstance(paper, Paper) and paper.work_mm else 0
         names["body"] = Markup(write(f"{BODIES[type(paper)]}.{end}", names))
         if isinstance(paper, SolutionPaper):
             names["guide"] = Markup(write(f"parts/guide_rows.{end}", names))

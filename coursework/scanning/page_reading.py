@@ -15,6 +15,8 @@ from coursework.course.course import Course, opened
 from coursework.course.variant import Variant
 from coursework.errors import CourseworkError
 from coursework.issuing.answer_papers import answer_papers
+from coursework.issuing.issued import Issued
+from coursework.issuing.questions import PaperQuestions
 from coursework.messages import Message, as_message
 from coursework.scanning.scan_store import (
     ANSWERS,
@@ -75,9 +77,14 @@ class Papers(Mapping[str, Sequence[AnswerPage]]):
     """The answer pages of each paper by its code, laid out when they are asked for."""
 
     def __init__(self, course: Course[Any], issued: Mapping[str, Any]):
-        self.course, self.papers = course, answer_papers(issued)
+        self.course, self.papers, self._issued = course, answer_papers(issued), issued
         self._laid_out = lru_cache(_LAID_OUT)(self._pages)
         self.variant = lru_cache(8 * _LAID_OUT)(self._variant)
+
+    @cached_property
+    def questions(self) -> PaperQuestions:
+        """Questions of the papers, with their numbers."""
+        return PaperQuestions.of(self.course, Issued(self._issued, "what was issued"))
 
     @cached_property
     def students(self) -> tuple[str, ...]:

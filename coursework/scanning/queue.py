@@ -57,28 +57,18 @@ class ScanQueue:
         return max(sorted(spoken), key=lambda code: spoken[code]) if spoken else "en"
 
     @cached_property
-    def _order(self) -> dict[tuple[str, str], int]:
-        """The questions in the order in which they were printed."""
-        places = ((f.place.exercise, f.place.part) for paper in self.asked.values() for f in paper.asked)
-        return {key: number for number, key in enumerate(dict.fromkeys(places))}
-
-    @cached_property
     def cards(self) -> list[AnswerCard]:
         """Pages and papers that nobody knows, then question after question, all students together; of each
         question last the numbers that are probably read right, which a person compares with their pictures at
         a glance."""
-        return sorted(
-            self.found.cards,
-            key=lambda c: (self._rank(c), c.is_likely, c.student, c.seed, c.coordinate, c.part),
-        )
+        ranks = {question: rank for rank, question in enumerate(self.papers.questions)}
+        before = {PAGE: -2, NAME: -1}
 
-    def _rank(self, card: AnswerCard) -> int:
-        return (
-            -2
-            if card.exercise == PAGE
-            else -1
-            if card.exercise == NAME
-            else self._order[card.exercise, card.part]
+        def rank(card: AnswerCard) -> int:
+            return before.get(card.exercise) or ranks.get((card.exercise, card.part), len(ranks))
+
+        return sorted(
+            self.found.cards, key=lambda c: (rank(c), c.is_likely, c.student, c.seed, c.coordinate, c.part)
         )
 
     def group(self, card: AnswerCard) -> dict[str, Any]:
@@ -113,7 +103,7 @@ class ScanQueue:
         return {
             "id": f"{card.exercise}/{card.part}",
             "sort": "question",
-            "number": next((f.number for f in fields if f.number), ""),
+            "number": self.papers.questions.number(card.exercise, card.part),
             "exercise": card.exercise,
             "part": card.part,
             "title": _titles(self.papers.course[card.exercise]),

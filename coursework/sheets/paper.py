@@ -81,5 +81,6 @@ class FeedbackPaper:
     mark: str = ""  #: as printed, 14.5; empty where only points count
     answers: bool = True  #: whether the right answers are shown
     advice: tuple[str, ...] = ()  #: what to look at next, Markdown
+    places: tuple[int, ...] = ()  #: numbers of its exercises on the paper; 1, 2, … where all are shown
     numbered: bool = True  #: questions are 1.1, 1.2 as on a paper; else as on the sheet of each exercise
     open: int = 0  #: answers that wait for a person; until then the mark is provisional

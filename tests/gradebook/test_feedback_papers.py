@@ -122,6 +122,15 @@ def test_what_was_handed_in_and_not_read_yet_is_not_called_missing(tmp_path, iss
     assert found.advice == ()
 
 
+def test_the_exercises_after_one_that_is_not_read_yet_keep_their_numbers(tmp_path, issued_file):
+    rows = answers("Ada", NAMES[1], 6, s_plus_l="1 mm")
+    found = paper(tmp_path, issued_file(), rows, waiting={NAMES[0]})
+    assert "question 2.1" in found.advice[0]
+    renderer = renderer_of(COURSE.folder)
+    for page in (renderer.html(found), renderer.feedback_notebook(found)):
+        assert {*re.findall(r"\b([0-9])[.][0-9](?=</strong>|[.]?[*][*])", page)} == {"2"}
+
+
 def test_grade_prints_a_paper_a_sitting(tmp_path, issued_file):
     path = issued_file()
     items = [given("Ada", NAMES[0], 5), given("Ada", NAMES[0], 7, sitting=2)]

@@ -10,7 +10,10 @@ from small_assignment import table
 import coursework
 from coursework.cli import run
 from coursework.gradebook.submissions import read_file
+from coursework.issuing.assignment import AskedExercise, Assignment
+from coursework.issuing.issued import Issued, issued_content
 from coursework.issuing.issuing import Issue
+from coursework.issuing.questions import PaperQuestions
 from coursework.issuing.wide_form import wide_form
 
 ROSTER = (
@@ -97,7 +100,8 @@ def test_a_title_has_every_number_of_its_question_and_what_a_paper_does_not_ask_
     assert len(asked) > 1, "these seeds ask the same questions"
     variants = {name: variants[name] for name in asked.values()}
     issues = [Issue(name, variant, ("en",), name) for name, variant in variants.items()]
-    columns, rows = wide_form(issues)
+    content = issued_content(issues, Assignment("exam", (AskedExercise("slotted_mechanism"),)))
+    columns, rows = wide_form(course, content, PaperQuestions.of(course, Issued(content, "it")))
     titles = [title for title in columns if "slotted_mechanism " in title and not title.endswith("seed")]
     assert len({*columns}) == len(columns)
     for row in rows:

@@ -12,10 +12,20 @@ from coursework.database.assignments import issued_content, put_issued
 from coursework.database.current_marks import adjusted_sheets
 from coursework.database.decisions import read_decisions
 from coursework.database.instructor_queries import people_of
+from coursework.database.marking import mark_new
 from coursework.database.submissions import insert_submission
+from coursework.gradebook.feedback_sheets import feedback_paper
 from coursework.gradebook.rows import AnswerRow, RowOrigin
+from coursework.gradebook.statistics.page import report as class_report
+from coursework.issuing.answer_papers import answer_papers
+from coursework.issuing.wide_form import wide_form
+from coursework.rendering.renderer import renderer_of
+from coursework.scanning.page_reading import Papers
+from coursework.sheets.paper import Paper, PaperHeading
 from coursework.site.desk import after_exam
 from coursework.site.desk.class_cache import class_now
+from coursework.site.desk.question_page import statistics_of
+from coursework.site.papers.student_paper import StudentPaper
 
 WRITTEN = {
     "Ada": {"rA": "trop court", "theta4": "zz"},
@@ -73,30 +83,83 @@ def test_a_wrong_answer_that_three_wrote_waits_and_one_that_two_wrote_does_not(t
 
 
 def test_a_question_has_its_number_on_the_papers_everywhere(tmp_path):
-    """A choice or an angle is asked third, and the questions after it are fourth, fifth and so on for all."""
-    desk = DeskClass(f"sqlite:///{tmp_path}/desk.db", {})
-    exercise = desk.site.course[EXERCISE]
-    variants = [exercise.variant(seed, "fr") for seed in range(12)]
-    first, other = variants[0], next(v for v in variants if v.part_ids != variants[0].part_ids)
-    both = dict(zip(STUDENTS, (first, other), strict=False))
+    """Versions that ask a choice or an angle in third place, and others of a bank of questions; the numbers
+    are those that the printed papers show."""
+    desk, exercises = DeskClass(f"sqlite:///{tmp_path}/desk.db", {}), (EXERCISE, "vocabulary")
+    course = desk.site.course
+    papers = {
+        name: [course[exercise].variant(seed, "fr") for exercise in exercises]
+        for name, seed in zip(STUDENTS[:3], (0, 1, 2), strict=True)
+    }
     with desk.site.store.begin() as connection:
         content = issued_content(connection, desk.number)
-        issued = [{"student": name, "record": variant.record} for name, variant in both.items()]
-        number = put_issued(
-            connection,
-            {**content, "assignment": {**content["assignment"], "name": "other"}, "issued": issued},
-        )
-    now = class_now(desk.site, number)
-    for variant in both.values():
-        numbers = [now.number(EXERCISE, part) for part in variant.part_ids]
-        assert numbers == [f"1.{k}" for k in range(1, len(numbers) + 1)]
-    third = {variant.part_ids[2] for variant in both.values()}
-    assert {part for _, part in after_exam.exam_of(now).called("1.3")} == third
-    changed = {"kind": "bonus", "question": f"{EXERCISE}/{first.part_ids[2]}"}
+        content |= {
+            "assignment": {**content["assignment"], "name": "other", "exercises": list(exercises)},
+            "issued": [
+                {"student": name, "version": "ABC"[v.seed], "record": v.record}
+                for name, variants in papers.items()
+                for v in variants
+            ],
+        }
+        number = put_issued(connection, content)
+        rows = [
+            AnswerRow(name, v.exercise.name, "", part, "zz", "answers.csv")
+            for name in papers
+            for v in papers[name]
+            for part in v.part_ids
+        ]
+        insert_submission(connection, number, rows, source="answers.csv", received_at=desk.at)
+    mark_new(course, desk.site.store, number)
+    now, renderer = class_now(desk.site, number), renderer_of(course.folder)
+    heading, printed = PaperHeading("fr", "", "", ""), {}
+    for name, variants in papers.items():
+        asked = [(v.exercise.name, part) for v in variants for part in v.part_ids]
+        page = renderer.html(Paper(heading, tuple(v.handout() for v in variants)))
+        printed[name] = dict(zip(asked, re.findall(r'class="number">([0-9.]+)[.]<', page), strict=True))
+    numbers = {}
+    for question in dict.fromkeys(question for asked in printed.values() for question in asked):
+        own = {asked[question] for asked in printed.values() if question in asked}
+        numbers[question] = "/".join(sorted(own, key=lambda text: [*map(int, text.split("."))]))
+    assert any("/" in text for text in numbers.values())
+    labels = {
+        (exercise, part): f"{text} {part}" if [*numbers.values()].count(text) > 1 else text
+        for (exercise, part), text in numbers.items()
+    }
+    assert len({*labels.values()}) == len(labels)
+    assert labels[EXERCISE, "guide"] == "1.3 guide"
+
+    assert dict(now.questions) == dict(Papers(course, content).questions) == numbers
+    for name, asked in printed.items():
+        on_site = StudentPaper(course, content, name, "fr", {})
+        assert [box.number for box in on_site.boxes.values()] == [*asked.values()]
+        scanned = next(one for one in answer_papers(content).values() if one.student == name)
+        fields = {
+            (f.exercise, f.part): f.number for page in scanned.pages(course) for f in page.fields if f.number
+        }
+        assert fields == asked
+        sheets = [graded for graded in now.graded.values() if graded.student == name]
+        feedback = renderer.html(feedback_paper(course, now.issued, name, sheets, "fr"))
+        assert {*re.findall(r'<strong class="no">([0-9.]+)<', feedback)} == {*asked.values()}
+        page = desk.browser(TEACHER, "fr").get(f"/desk/{number}/student", params={"name": name}).text
+        assert re.findall(r"<p><strong>([0-9.]+)</strong>", page) == [*asked.values()]
+    titles = desk.browser(TEACHER, "fr").get(f"/desk/{number}/files/answers_wide.csv").text.splitlines()[0]
+    wide, _ = wide_form(course, content, now.questions)
+    assert [title for title in titles.split(";") if "." in title] == wide[2:]
+    assert {tuple(title.split()[1:3]): title.split()[0] for title in wide[2:]} == numbers
+    table = desk.browser(TEACHER, "fr").get(f"/desk/{number}").text
+    assert {*re.findall(r'title="[^"]*">([0-9./]+(?: \w+)?)</a></th>', table)} == {*labels.values()}
+    report = renderer.report_html(class_report(course, statistics_of(now), "fr", now.questions))
+    assert {*re.findall(r"([0-9./]+) ·", report)} >= {*numbers.values()}
+    queue = desk.browser(TEACHER, "fr").get(f"/desk/{number}/queue").text
+    listed = re.findall(r'exercise=(\w+)&amp;part=(\w+)">([0-9./]+) ', queue)
+    assert listed
+    assert all(numbers[exercise, part] == text for exercise, part, text in listed)
+    exam = after_exam.exam_of(now)
+    assert {row.number for row in exam.table} == {*numbers.values()}
+    assert exam.called("1.3") == [(EXERCISE, "guide"), (EXERCISE, "swing")]
+    changed = {"kind": "bonus", "question": f"{EXERCISE}/guide"}
     preview = desk.browser(TEACHER).get(f"/desk/{number}/after", params=changed).text
-    assert f"Question 1.3 {first.part_ids[2]}:" in preview
-    page = desk.browser(TEACHER, "fr").get(f"/desk/{number}").text
-    assert (page.count(">1.3<"), ">1.10<" in page) == (2, False)
+    assert "Question 1.3 guide:" in preview
 
 
 def test_what_was_read_has_the_numbers_of_the_readers_language(desk):

@@ -10,7 +10,7 @@ from coursework.course.course import Course
 from coursework.course.error_values import TAKEN
 from coursework.course.exercise import ALL, CourseExercise
 from coursework.errors import CourseworkError
-from coursework.gradebook.statistics.measures import PartStatistics, Statistics
+from coursework.gradebook.statistics.measures import PartStatistics
 from coursework.language.words import words
 from coursework.markup.markdown import plain_line
 from coursework.model import Part
@@ -44,14 +44,11 @@ class ReportedError(Protocol):
 
 
 class Names:
-    """Names of one report; a name unknown to the course stays as in the marks."""
+    """Names of exercises, questions and mistakes; a name unknown to the course stays as in the marks."""
 
-    def __init__(self, course: Course, statistics: Statistics | None, lang: str) -> None:
+    def __init__(self, course: Course, lang: str) -> None:
         self._course = course
         self._lang = lang
-        self._marked: dict[str, set[str]] = {}
-        for part in statistics.parts if statistics else ():
-            self._marked.setdefault(part.exercise, set()).add(part.part)
         self._texts: dict[str, list[Mapping[str, Any]]] = {}
 
     def exercise(self, name: str) -> CourseExercise | None:
@@ -61,17 +58,6 @@ class Names:
         return self._course[name]
 
     # --------------------------------------------------------------- questions
-
-    def number(self, part: PartStatistics) -> int | None:
-        """Return the number of the question; None where it differs between sheets or is unknown."""
-        exercise = self.exercise(part.exercise)
-        requested = [p for p in exercise.spec.parts if not p.by_request] if exercise else []
-        ids = [p.id for p in requested]
-        always = {p.id for p in requested if p.when is None}
-        if part.part not in ids or not always <= self._marked[part.exercise] <= set(ids):
-            return None
-        position = ids.index(part.part)
-        return position + 1 if always.issuperset(ids[:position]) else None
 
     def _exercise_and_part(self, part: ReportedQuestion) -> tuple[CourseExercise | None, Part | None]:
         """Return the exercise and the part; None for one that the course does not have."""

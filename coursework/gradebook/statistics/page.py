@@ -27,6 +27,7 @@ from coursework.gradebook.statistics.measures import (
     PartStatistics,
     Statistics,
 )
+from coursework.issuing.questions import PaperQuestions
 from coursework.language.numbers import localise, plain
 from coursework.language.typography import typeset
 from coursework.language.words import listed, words
@@ -48,9 +49,12 @@ def sheet_order(course: Course, exercises: Iterable[str]) -> dict[str, tuple[str
     return {name: tuple(p.id for p in course[name].spec.parts) for name in exercises if name in course}
 
 
-def report(course: Course, statistics: Statistics, lang: str) -> ReportContent:
-    """Return the report: conclusions, points, a section for each exercise, mistakes."""
-    page = _StatisticsPage(course, statistics, lang)
+def report(
+    course: Course, statistics: Statistics, lang: str, questions: PaperQuestions | None = None
+) -> ReportContent:
+    """Return the report: conclusions, points, a section for each exercise, mistakes. Questions are numbered
+    where those of the papers are given."""
+    page = _StatisticsPage(course, statistics, lang, questions or PaperQuestions())
     sections = [page.short()]
     if statistics.percents.size:
         sections.append(page.points())
@@ -69,7 +73,7 @@ def report(course: Course, statistics: Statistics, lang: str) -> ReportContent:
 
 def mistake_rows(course: Course, statistics: Statistics, lang: str) -> Iterator[dict[str, Any]]:
     """Yield the lines of ``mistakes.csv``."""
-    names = Names(course, statistics, lang)
+    names = Names(course, lang)
     for item in statistics.mistakes:
         yield {c: {**item.row(), "says": names.says(item)}[c] for c in MISTAKE_COLUMNS}
 
@@ -77,13 +81,13 @@ def mistake_rows(course: Course, statistics: Statistics, lang: str) -> Iterator[
 class _StatisticsPage:
     """Sections of one report."""
 
-    def __init__(self, course: Course, statistics: Statistics, lang: str) -> None:
+    def __init__(self, course: Course, statistics: Statistics, lang: str, questions: PaperQuestions) -> None:
         self.course = course
         self.statistics = statistics
         self.lang = lang
         self.texts: Words = words(lang)["statistics"]
         self.verdicts: Words = words(lang)["verdicts"]
-        self.names = Names(course, statistics, lang)
+        self.names, self.questions = Names(course, lang), questions
 
     # ---------------------------------------------------------------- sections
 
@@ -273,8 +277,8 @@ class _StatisticsPage:
         return " ".join(to_text(self._title(name), self.lang).split())
 
     def _numbered(self, part: PartStatistics, name: str) -> str:
-        number = self.names.number(part)
-        return name if number is None else f"{number} · {name}"
+        number = self.questions.number(part.exercise, part.part)
+        return f"{number} · {name}" if number else name
 
     def _name(self, part: PartStatistics) -> str:
         symbol = self.names.symbol(part)

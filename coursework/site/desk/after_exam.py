@@ -37,7 +37,6 @@ from coursework.language.words import words
 from coursework.messages import localised
 from coursework.site.desk.class_cache import class_here, class_now, class_page_of
 from coursework.site.desk.question_cards import moment
-from coursework.site.desk.question_page import statistics_of
 from coursework.site.frame.budgets import DESK_FILE
 from coursework.site.frame.requests import Request, Route
 from coursework.system.toml_files import source_of, table_of
@@ -230,7 +229,7 @@ def _page(request: Request, now: ClassState, fields: Mapping[str, str], message:
     except BadInput as fault:
         changed = Restated((), ())
         message = message or localised(fault)
-    names_of = Names(now.course, statistics_of(now), lang)
+    names_of = Names(now.course, lang)
     captions = {(one.exercise, one.part): names_of.question(one) for one in exam.table}
     current = exam.distribution()
     batches = after_words.batch_texts(exam, exam.decisions.standing_steps, lang)
@@ -264,7 +263,7 @@ def _page(request: Request, now: ClassState, fields: Mapping[str, str], message:
             if len(among) > 1
         },
         "exercises": {
-            name: f"{exam.exercise_number(name)} {now.course[name].title(lang)}"
+            name: f"{exam.questions.exercise_number(name)} {now.course[name].title(lang)}".strip()
             for name in dict.fromkeys(exercise for exercise, _ in exam.questions)
         },
         "on_questions": [kind for kind in OFFERED if kind not in OF_NO_QUESTION],

@@ -32,6 +32,7 @@ from coursework.gradebook.columns import own_columns
 from coursework.gradebook.graded_sheet import Graded
 from coursework.gradebook.presence import PRESENT
 from coursework.gradebook.scale import mark_of
+from coursework.issuing.questions import PaperQuestions
 from coursework.issuing.students import folded
 from coursework.marking.mark import Mark
 from coursework.site.desk.class_cache import class_now, class_within, students_here
@@ -183,13 +184,11 @@ class ClassTable:
         return parsed
 
     @cached_property
-    def questions(self) -> tuple[tuple[str, str], ...]:
-        """Exercise and part of every question."""
-        return tuple((exercise, part) for exercise, part, _ in self._parsed["questions"])
-
-    def number(self, exercise: str, part: str) -> str:
-        """Return the number of a question on the papers."""
-        return next(str(n) for e, p, n in self._parsed["questions"] if (e, p) == (exercise, part))
+    def questions(self) -> PaperQuestions:
+        """Questions of the papers, with their numbers."""
+        return PaperQuestions(
+            {(exercise, part): number for exercise, part, number in self._parsed["questions"]}
+        )
 
     @property
     def means(self) -> Sequence[str]:
@@ -303,7 +302,7 @@ def _content(now: ClassState) -> str:
             row.presence,
         )
         lines.append([row.student, row.identity, own, *rest])
-    questions = [[exercise, part, now.number(exercise, part)] for exercise, part in now.questions]
+    questions = [[*question, number] for question, number in now.questions.items()]
     scale = (now.adjusted.assignment or {}).get("mark") or {}
     content = {
         "questions": questions,

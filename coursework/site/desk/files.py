@@ -27,8 +27,8 @@ from coursework.gradebook.placing import as_texts
 from coursework.gradebook.platform_gradebooks import PLATFORMS, platform_gradebook
 from coursework.gradebook.rows import AnswerRow, PlatformFile, Rejected
 from coursework.issuing.issued import COLUMNS
+from coursework.issuing.wide_form import wide_form
 from coursework.messages import as_message, localised
-from coursework.sheets.units import units_text
 from coursework.site.desk import uploads
 from coursework.site.desk.class_cache import class_here, class_page_of
 from coursework.site.desk.question_cards import moment
@@ -283,16 +283,12 @@ def _submissions(request: Request, now: ClassState) -> bytes:
 
 def _wide(request: Request, now: ClassState) -> bytes:
     """Return an empty table for answers on paper: a line for each student, a column for each question."""
-    variants = {
-        name: now.course[name].from_record(record) for (name, _), record in now.issued.records.items()
-    }
-    titles = []
-    for exercise, part in now.questions:
-        own = next((p for p in variants[exercise].parts if p.id == part), None)
-        unit = units_text(own, request.lang, variants[exercise]) if own else ""
-        titles.append(f"{now.number(exercise, part)} {exercise} {part}" + (f" ({unit})" if unit else ""))
-    rows = ({"student": now.shown(name), **dict.fromkeys(titles, "")} for name in now.issued.students)
-    return csv_file(rows, ("student", *titles), spreadsheet_of(request))
+    with request.site.store.reading() as connection:
+        content = issued_content(connection, now.about.id)
+    students = {*now.issued.students}
+    own = [item for item in content["issued"] if item["student"] in students]
+    columns, rows = wide_form(now.course, {**content, "issued": own}, now.questions, codes=now.codes)
+    return csv_file(rows, columns, spreadsheet_of(request))
 
 
 WIDE = "answers_wide.csv"

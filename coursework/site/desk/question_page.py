@@ -49,9 +49,9 @@ def questions(request: Request) -> Response:
     """Return the page of the questions, in the order of the sheets or the hardest first."""
     now = class_here(request)
     class_statistics = statistics_of(now)
-    names = Names(now.course, class_statistics, request.lang)
+    names = Names(now.course, request.lang)
     by_question = {(item.exercise, item.part): item for item in class_statistics.parts}
-    asked_for = [QuestionRow(*item, now.number(*item), by_question.get(item)) for item in now.questions]
+    asked_for = [QuestionRow(*item, number, by_question.get(item)) for item, number in now.questions.items()]
     listed = [replace(item, words=names.question(item)) for item in asked_for]
     if request.query_params.get("sort") == "hard":
         listed.sort(
@@ -91,7 +91,7 @@ def question(request: Request) -> Response:
     part_statistics = next(
         (item for item in class_statistics.parts if (item.exercise, item.part) == (exercise, part)), None
     )
-    names = Names(now.course, class_statistics, request.lang)
+    names = Names(now.course, request.lang)
     mistakes = [
         (item, names.says(item) or item.name)
         for item in class_statistics.mistakes
@@ -113,7 +113,7 @@ def question(request: Request) -> Response:
         own=part_statistics,
         mistakes=mistakes,
         shown=card,
-        number=now.number(exercise, part),
+        number=now.questions.label(exercise, part),
         only=only,
         answers=[item for item in answers if not only or only in item.matches][:_ANSWERS],
         count=len(answers),
@@ -158,7 +158,7 @@ def _verdicts(request: Request, part_statistics: PartStatistics | None) -> list[
 def statistics(request: Request) -> Response:
     """Return the report of the statistics as a page, or as a PDF."""
     now = class_here(request)
-    document = report(now.course, statistics_of(now), request.lang)
+    document = report(now.course, statistics_of(now), request.lang, now.questions)
     renderer = renderer_of(now.course.folder)
     if request.path.endswith(".pdf"):
         return Download(renderer.report_pdf(document), "application/pdf", "report.pdf")

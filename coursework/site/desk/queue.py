@@ -153,7 +153,7 @@ def card_of(request: Request, now: ClassState, item: QueueItem) -> QueueCard:
             for entry, done in decisions
             if done is not None and done.made
         ),
-        now.number(group.exercise, group.part),
+        now.questions.label(group.exercise, group.part),
         margin,
         raw_texts([entry.mark for entry in group.members]),
         steps(first.mark.out_of),
@@ -319,7 +319,9 @@ def _by_question(now: ClassState, filters: Filters) -> list[tuple[str, str, str,
         (waiting.exercise, waiting.part) for waiting in waiting_items if waiting.group is not None
     )
     return [
-        (now.number(*question), *question, counts[question]) for question in now.questions if counts[question]
+        (number, *question, counts[question])
+        for question, number in now.questions.items()
+        if counts[question]
     ]
 
 

@@ -82,7 +82,7 @@ def _row(request: Request, now: ClassState, change: Change) -> ChangeRow:
     )
     points_before, points_now = (localise(p, request.lang) for p in (change.points_before, change.points_now))
     is_less = _number(change.points_now) < _number(change.points_before)
-    number = now.number(change.exercise, change.part)
+    number = now.questions.label(change.exercise, change.part)
     return ChangeRow(
         now.shown(change.student), number, change.answer, before, after, points_before, points_now, is_less
     )
@@ -97,7 +97,7 @@ def _questions(request: Request, now: ClassState, result: MarkedNow) -> list[tup
         gains_by_question.setdefault((change.exercise, change.part), []).append(gain)
     return [
         (
-            now.number(*question),
+            now.questions.label(*question),
             *_signs(gains_by_question[question]),
             localise(f"{sum(gains_by_question[question]):+g}", request.lang),
         )

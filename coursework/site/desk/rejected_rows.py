@@ -66,7 +66,7 @@ def _decided(request: Request, now: ClassState, row: UnplacedRow) -> str:
     answer = _answer(request, now, row, request.form.text("question"))
     _place(request, now, [(row, answer)], reason)
     return str(texts["placed_done"]).format(
-        now.shown(answer.student), now.number(answer.exercise, answer.part)
+        now.shown(answer.student), now.questions.label(answer.exercise, answer.part)
     )
 
 
@@ -129,7 +129,7 @@ def _answer(request: Request, now: ClassState, row: UnplacedRow, question: str) 
     if sheet is not None and part in sheet.lines and sheet.lines[part].verdict != "missing":
         raise BadInput(
             texts["place_taken"].format(
-                now.shown(student), now.number(exercise, part), sheet.lines[part].answer[:80]
+                now.shown(student), now.questions.label(exercise, part), sheet.lines[part].answer[:80]
             )
         )
     seeds = issued.seeds_of(student, exercise)

@@ -169,11 +169,10 @@ def _line(
     events = [event for event in happened if event.seed in ("", str(machine.seed))]
     events = [event for event in events if event.sitting in (0, machine.sitting)]
     lines = tuple(_history_line(request, event) for event in events)
-    mark, place = graded.lines[part], now.number(machine.exercise, part).partition(".")[0]
-    number = f"{place}.{list(machine.lines).index(part) + 1}"
+    mark, numbers = graded.lines[part], now.questions.on_paper(machine.exercise, machine.lines)
     return AnswerLine(
         question_card(now.course, now.issued, machine, part, request.lang),
-        number,
+        numbers[part],
         machine.lines[part],
         mark,
         sign_of(mark),

@@ -27,6 +27,7 @@ from coursework.errors import CourseworkError
 from coursework.gradebook.book import Gradebook, Result, results
 from coursework.gradebook.graded_sheet import Graded
 from coursework.issuing.issued import Issued
+from coursework.issuing.questions import PaperQuestions
 from coursework.language.words import words
 from coursework.platforms.lti.launch import Launch
 from coursework.platforms.lti.storage import Score, Storage
@@ -93,7 +94,7 @@ def score_of(
         marked = marked_in(now, student) if now else marked_of(site.course, connection, number, student)
     if marked is None:
         return None
-    comment = _comment(marked, marked.given(state), lang)
+    comment = _comment(site.course, marked, marked.given(state), lang)
     return Score(marked.given(state), marked.result.out_of, comment, marked.waits)
 
 
@@ -111,14 +112,14 @@ def assignment_state(
     )
 
 
-def _comment(marked: Marked, given: float, lang: str) -> str:
+def _comment(course: Course, marked: Marked, given: float, lang: str) -> str:
     texts = words(lang)["lti"]
-    stated = (marked.issued.assignment or {}).get("exercises") or marked.issued.exercises
-    order = {str(exercise): index for index, exercise in enumerate(stated, 1)}
+    questions = PaperQuestions.of(course, marked.issued, on_papers=True)
+    sheets = {sheet.exercise: sheet for sheet in marked.sheets}
     lines = [
-        texts["comment_line"].format(f"{order[sheet.exercise]}.{k}", verdict_word(line.verdict, lang))
-        for sheet in sorted(marked.sheets, key=lambda sheet: order[sheet.exercise])
-        for k, line in enumerate(sheet.lines.values(), 1)
+        texts["comment_line"].format(number, verdict_word(sheets[name].lines[part].verdict, lang))
+        for name in dict.fromkeys(name for name, _ in questions if name in sheets)
+        for part, number in questions.on_paper(name, sheets[name].lines).items()
     ]
     values = {"points": points_number(given, lang), "out_of": points_number(marked.result.out_of, lang)}
     comment = str(texts["comment"]).format(**values, number=marked.result.sitting, verdicts="; ".join(lines))

@@ -437,24 +437,11 @@ def test_questions_and_mistakes_are_called_as_the_students_know_them(course, fol
     assert slip in "".join(row[1] for row in table.rows)
     assert "no_coriolis" not in renderer_of(course.folder).report_html(page)
     (guide,) = (p for p in told.parts if p.part == "guide")
-    asked = Names(course, told, lang).question(guide)
+    asked = Names(course, lang).question(guide)
     assert " " in asked
     parts, became = page.sections[2].tables
     assert parts.rows[0][0].endswith("(guide)"), "for its author"
     assert "(guide)" not in became.rows[0][0]
-
-
-def test_a_number_is_told_only_where_every_sheet_has_it(course, folder):
-    """``slotted_mechanism`` asks its third and later questions of some variants only."""
-    ids = [p.id for p in course["slotted_mechanism"].spec.parts if not p.by_request]
-
-    def numbers(asked):
-        told = measure(read(folder([line("a", "slotted_mechanism", i, "correct", 1) for i in asked])))
-        return [Names(course, told, "fr").number(p) for p in told.parts]
-
-    assert numbers(ids)[:2] == [1, 2]
-    assert numbers(ids)[-1] is None
-    assert numbers(ids[1:]) == [None] * len(ids[1:])
 
 
 def test_a_chart_is_the_same_twice_and_may_have_no_rows():
