@@ -5,7 +5,7 @@ A message says what was asked, what was found and what would do.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 
 from coursework.messages import Message, as_message, localised
 
@@ -134,6 +134,13 @@ _SYMBOL = 3  #: letters of a symbol at most
 def cut_short(text: str, most: int) -> str:
     """Return a text short enough for a message."""
     return text if len(text) <= most else text[: most - 1] + "…"
+
+
+def first_few(names: Sequence[str], most: int, *, with_count: bool = False) -> str:
+    """Return the first of the names as a list, with an ellipsis in place of the others, and on request the
+    number of all."""
+    more = f", … ({len(names)})" if with_count else ", …"
+    return ", ".join(names[:most]) + (more if len(names) > most else "")
 
 
 def bare_letters(text: str) -> str:

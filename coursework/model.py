@@ -60,6 +60,26 @@ class GivenSpec:
     def is_fixed(self) -> bool:
         return self.low is None and not self.choices
 
+    def bounds(self, drawn: Mapping[str, Any]) -> tuple[Any, Any]:
+        """Return the lowest and the highest value for given quantities that are drawn before, numbers or
+        arrays.
+
+        Parameters
+        ----------
+        drawn
+            Values by name; those that a bound takes are among them.
+
+        Returns
+        -------
+        low, high
+            In the quantity's unit; None for a quantity without a range.
+        """
+        low, high = (
+            bound(*(drawn[name] for name in _parameters(bound))) if callable(bound) else bound
+            for bound in (self.low, self.high)
+        )
+        return low, high
+
     def is_listed(self, parts: Collection[str]) -> bool:
         """Return True if a sheet that asks these parts lists the quantity among its data.
 

@@ -8,6 +8,7 @@ import sys
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from datetime import date
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -15,8 +16,10 @@ import click
 
 from coursework.cli.options import (
     DONE,
+    EXISTING_FILE,
+    FILE,
+    FOLDER,
     FOUND,
-    FilePath,
     assignment_option,
     db_option,
     json_option,
@@ -24,7 +27,7 @@ from coursework.cli.options import (
     writes,
 )
 from coursework.cli.printing import print_json, print_table, progress_bar, say, warn
-from coursework.errors import BadInput, counted
+from coursework.errors import BadInput, counted, first_few
 from coursework.language.words import words
 from coursework.messages import Message, language_of_messages, localised
 from coursework.system.visible import one_line
@@ -35,7 +38,7 @@ if TYPE_CHECKING:
     from coursework.gradebook.decision import Decision
     from coursework.issuing.assignment import Assignment
 
-_NAMED = 12  #: students named on a line
+_named = partial(first_few, most=12, with_count=True)  #: students on a line
 _CHANGES = 200  #: changed marks in a table
 _REASONS = 5  #: of rejected rows, the most frequent
 _PLACE = re.compile(r"(?P<place>[^=]*)=(?P<value>.+)", re.DOTALL)
@@ -48,16 +51,14 @@ def _several(name: str, metavar: str, **more: Any) -> Callable[[Any], Any]:
 
 
 @click.command()
-@click.argument("file", type=FilePath(path_type=Path, dir_okay=False, exists=True), metavar="FILE.toml")
+@click.argument("file", type=EXISTING_FILE, metavar="FILE.toml")
 @click.option(
     "--issued",
-    type=FilePath(path_type=Path, dir_okay=False),
+    type=FILE,
     help="The issued.json of the build; by default in the folder that FILE names, or that is named like it.",
 )
 @click.option(
-    "--marks",
-    type=FilePath(path_type=Path, file_okay=False),
-    help="Folder of marks that grade wrote; by default marks/ beside issued.json.",
+    "--marks", type=FOLDER, help="Folder of marks that grade wrote; by default marks/ beside issued.json."
 )
 @db_option
 @assignment_option
@@ -335,10 +336,6 @@ def _value(option: str, text: str) -> float:
 # ------------------------------------------------------------------------ lines
 
 
-def _named(names: Sequence[str]) -> str:
-    return ", ".join(names[:_NAMED]) + (f", … ({len(names)})" if len(names) > _NAMED else "")
-
-
 def _tell(exam: Exam, restated: Sequence[Decision], notes: Sequence[Message]) -> None:
     """Print what is left, the questions, and the steps."""
     from coursework.gradebook import after_words as said
@@ -403,7 +400,7 @@ def _tell_cards(exam: Exam) -> None:
                 texts["look"]: texts["cards_by"][group.why],
                 texts["answer"]: one_line(members[0].mark.answer)[:60],
                 texts["answers"]: len(members),
-                texts["students"]: one_line(_named([one.student for one in members][:3])),
+                texts["students"]: one_line(first_few([one.student for one in members], 3)),
             }
             for group, members in exam.open
         ]

@@ -11,8 +11,9 @@ import click
 from coursework.cli import completion
 from coursework.cli.options import (
     DONE,
+    FILE,
+    FOLDER,
     FOUND,
-    FilePath,
     Lists,
     WholeNumber,
     cluster_option,
@@ -71,7 +72,7 @@ def check(
 
 
 @click.command()
-@click.argument("folder", type=FilePath(path_type=Path, file_okay=False))
+@click.argument("folder", type=FOLDER)
 @click.argument("exercise", required=False)
 @click.argument("asked", nargs=-1)
 @click.option(
@@ -103,10 +104,7 @@ def check(
     "others.",
 )
 @click.option(
-    "--from-pylinkage",
-    "pylinkage",
-    type=FilePath(path_type=Path, dir_okay=False),
-    help="Start from the mechanism in a JSON file of pylinkage.",
+    "--from-pylinkage", "pylinkage", type=FILE, help="Start from the mechanism in a JSON file of pylinkage."
 )
 @click.pass_context
 def new(
@@ -220,14 +218,10 @@ def _copied(
 
 
 @click.command()
-@click.argument("file", type=FilePath(path_type=Path, dir_okay=False))
+@click.argument("file", type=FILE)
 @seed_option
 @lang_option
-@click.option(
-    "--out",
-    type=FilePath(path_type=Path, file_okay=False),
-    help="Folder to write the figure (SVG) and the motion (HTML) to.",
-)
+@click.option("--out", type=FOLDER, help="Folder to write the figure (SVG) and the motion (HTML) to.")
 @json_option
 @click.pass_context
 def mechanism(

@@ -12,8 +12,8 @@ import click
 from coursework.cli.help_pages import HelpfulGroup
 from coursework.cli.options import (
     DONE,
+    FOLDER,
     FOUND,
-    FilePath,
     NeedingExtra,
     assignment_option,
     database_ready,
@@ -373,7 +373,7 @@ def sign_out(context: click.Context, url: str, login: str | None) -> None:
 
 @database.command(cls=NeedingExtra, ready=database_ready)
 @_url_argument
-@click.argument("folder", metavar="DIR", type=FilePath(path_type=Path, file_okay=False))
+@click.argument("folder", metavar="DIR", type=FOLDER)
 @click.pass_context
 def dump(context: click.Context, url: str, folder: Path) -> None:
     """Write a database into the folder DIR as CSV files, one for each table; 'restore' reads them into any
@@ -392,7 +392,7 @@ def dump(context: click.Context, url: str, folder: Path) -> None:
 
 
 @database.command(cls=NeedingExtra, ready=database_ready)
-@click.argument("folder", metavar="DIR", type=FilePath(path_type=Path, file_okay=False))
+@click.argument("folder", metavar="DIR", type=FOLDER)
 @_url_argument
 @click.pass_context
 def restore(context: click.Context, folder: Path, url: str) -> None:

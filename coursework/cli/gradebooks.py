@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from coursework.cli.options import DONE, FOUND, FilePath
+from coursework.cli.options import DONE, FILE, FOUND, PATH
 from coursework.cli.printing import say, warn
 from coursework.errors import BadInput, counted
 from coursework.messages import Message
@@ -22,17 +22,17 @@ _SIGNS = {"point": ".", "comma": ",", None: ""}
 
 @click.command()
 @click.argument("platform", metavar="moodle|canvas|blackboard|sakai")
-@click.argument("marks", type=FilePath(path_type=Path))
+@click.argument("marks", type=PATH)
 @click.option(
     "--template",
-    type=FilePath(path_type=Path, dir_okay=False),
+    type=FILE,
     help=(
         "The gradebook as the platform exports it. Without it, XML for Moodle is written, in which students "
         "are named by their ID numbers."
     ),
 )
 @click.option("--item", required=True, help="Name of the item to fill; for XML its ID number.")
-@click.option("--out", type=FilePath(path_type=Path, dir_okay=False), required=True, help="File to write.")
+@click.option("--out", type=FILE, required=True, help="File to write.")
 @click.option(
     "--score",
     type=click.Choice(("points", "mark", "percent")),

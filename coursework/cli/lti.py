@@ -12,9 +12,10 @@ import click
 from coursework.cli.help_pages import HelpfulGroup
 from coursework.cli.options import (
     DONE,
+    FILE,
+    FOLDER,
     FOUND,
     SITE_DATABASE,
-    FilePath,
     NeedingExtra,
     database_ready,
     json_option,
@@ -34,7 +35,7 @@ KINDS = ("moodle", "canvas", "other")
 folder_option = click.option(
     "--in",
     "folder",
-    type=FilePath(path_type=Path, file_okay=False),
+    type=FOLDER,
     default="lti",
     show_default=True,
     help="Folder of the platforms and the keys.",
@@ -367,11 +368,7 @@ def _send(folder: Path, storage: Storage) -> None:
 @click.argument("course_title", required=False, metavar="[COURSE]")
 @folder_option
 @db_option
-@click.option(
-    "--out",
-    type=FilePath(path_type=Path, dir_okay=False),
-    help="CSV to write; by default the list is printed.",
-)
+@click.option("--out", type=FILE, help="CSV to write; by default the list is printed.")
 @click.pass_context
 def roster(context: click.Context, course_title: str | None, folder: Path, db: str, out: Path | None) -> None:
     """Write the class list of a platform as a CSV for 'build --roster'.

@@ -10,8 +10,9 @@ import click
 
 from coursework.cli.assignments import build_papers, write_build
 from coursework.cli.options import (
+    FOLDER,
     LANGUAGE_DEFAULT,
-    FilePath,
+    PATH,
     Lists,
     WholeNumber,
     cluster_option,
@@ -46,7 +47,7 @@ from coursework.system.limits import MOST_VARIANTS
 @seed_option
 @click.option(
     "--roster",
-    type=FilePath(path_type=Path),
+    type=PATH,
     help=("CSV with a column student, or with surname and first name; a column lang is optional."),
 )
 @columns_option
@@ -69,7 +70,7 @@ from coursework.system.limits import MOST_VARIANTS
 )
 @parts_option
 @given_option
-@click.option("--out", type=FilePath(path_type=Path, file_okay=False), help="Folder to write.")
+@click.option("--out", type=FOLDER, help="Folder to write.")
 @click.option(
     "--overwrite",
     is_flag=True,
@@ -107,7 +108,7 @@ def build(context: click.Context, /, exercises: Sequence[str], **options: Any) -
 
 
 @click.command()
-@click.option("--out", type=FilePath(path_type=Path, file_okay=False), default="demo", show_default=True)
+@click.option("--out", type=FOLDER, default="demo", show_default=True)
 @click.pass_context
 def demo(context: click.Context, out: Path) -> None:
     """Do the whole job for a small class: sheets, answers of all kinds, marks."""

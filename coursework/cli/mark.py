@@ -11,8 +11,10 @@ import click
 
 from coursework.cli.options import (
     DONE,
+    EXISTING_FILE,
+    FOLDER,
     FOUND,
-    FilePath,
+    PATH,
     Lists,
     assignment_option,
     cluster_option,
@@ -26,7 +28,7 @@ from coursework.cli.options import (
     writes,
 )
 from coursework.cli.printing import by_reason, print_json, progress_bar, say, warn, warn_some
-from coursework.errors import BadInput, counted
+from coursework.errors import BadInput, counted, first_few
 from coursework.messages import Message, localised
 from coursework.system.extras import libraries
 from coursework.system.visible import one_line
@@ -41,12 +43,8 @@ if TYPE_CHECKING:
 
 
 @click.command()
-@click.argument("submissions", nargs=-1, type=FilePath(path_type=Path))
-@click.option(
-    "--issued",
-    type=FilePath(path_type=Path),
-    help="The issued.json of the build; with --db only the first time.",
-)
+@click.argument("submissions", nargs=-1, type=PATH)
+@click.option("--issued", type=PATH, help="The issued.json of the build; with --db only the first time.")
 @db_option
 @assignment_option
 @click.option(
@@ -55,9 +53,7 @@ if TYPE_CHECKING:
     help=("With --db: a file replaces the earlier one of the same name, for a corrected or a new export."),
 )
 @click.option(
-    "--out",
-    type=FilePath(path_type=Path, file_okay=False),
-    help="Folder to write; by default marks/ beside issued.json, and none with --db.",
+    "--out", type=FOLDER, help="Folder to write; by default marks/ beside issued.json, and none with --db."
 )
 @click.option(
     "--feedback/--no-feedback",
@@ -88,7 +84,7 @@ if TYPE_CHECKING:
 )
 @click.option(
     "--accepted",
-    type=FilePath(path_type=Path, dir_okay=False, exists=True),
+    type=EXISTING_FILE,
     help=(
         "CSV of answers accepted by hand: student,exercise,seed,part and optionally points,reason. The "
         "decisions.csv in the folder of the marks is always read."
@@ -116,7 +112,7 @@ if TYPE_CHECKING:
 @click.option(
     "--from",
     "marks",
-    type=FilePath(path_type=Path, dir_okay=False, exists=True),
+    type=EXISTING_FILE,
     help=(
         "Take the marks from a marks.csv that was edited by hand, without SUBMISSIONS; the summary and the "
         "feedback are written from it."
@@ -384,13 +380,11 @@ def grade_with_bar(
 
 
 @click.command()
-@click.argument("folder", metavar="DIR", type=FilePath(path_type=Path), required=False)
+@click.argument("folder", metavar="DIR", type=PATH, required=False)
 @db_option
 @assignment_option
 @lang_option
-@click.option(
-    "--out", type=FilePath(path_type=Path, file_okay=False), help="Folder to write; by default DIR/report."
-)
+@click.option("--out", type=FOLDER, help="Folder to write; by default DIR/report.")
 @decimal_option
 @cluster_option
 @json_option
@@ -449,7 +443,7 @@ def _report(
             "'coursework grade --issued … --from {path}' makes summary and feedback agree with it",
             students=counted(len(unlike), "student"),
             path=path,
-            names=f"{unlike[0]}, …" if len(unlike) > 1 else unlike[0],
+            names=first_few(unlike, 1),
         )
     measures = statistics.measure(marks, statistics_page.sheet_order(course, marks.exercises))
     if as_json:

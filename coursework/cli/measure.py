@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from coursework.cli.options import FilePath, exercises_argument, json_option, lang_option, opened, writes
+from coursework.cli.options import FOLDER, exercises_argument, json_option, lang_option, opened, writes
 from coursework.cli.printing import print_json, say
 from coursework.errors import counted
 from coursework.messages import Message, localised
@@ -27,11 +27,7 @@ if TYPE_CHECKING:
     "--paper", is_flag=True, help="Measure the accuracy of students on paper: digits kept, and the margin."
 )
 @lang_option
-@click.option(
-    "--out",
-    type=FilePath(path_type=Path, file_okay=False),
-    help="Folder for the page (HTML, PDF) and the JSON.",
-)
+@click.option("--out", type=FOLDER, help="Folder for the page (HTML, PDF) and the JSON.")
 @json_option
 @click.pass_context
 def accuracy(

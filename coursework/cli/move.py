@@ -11,7 +11,7 @@ import click
 
 from coursework.cli import completion
 from coursework.cli.options import (
-    FilePath,
+    FOLDER,
     WholeNumber,
     decimal_option,
     exercise_argument,
@@ -75,9 +75,7 @@ if TYPE_CHECKING:
     show_default=True,
     help="With --budget: part of an output that may be neglected.",
 )
-@click.option(
-    "--out", type=FilePath(path_type=Path, file_okay=False), help="Folder for the table and the plot."
-)
+@click.option("--out", type=FOLDER, help="Folder for the table and the plot.")
 @decimal_option
 @json_option
 @click.pass_context
@@ -371,7 +369,7 @@ def _drive(exercise: Any, text: str) -> Motor:
     help="Draw no paths, vectors and values: they tell answers of the exercise.",
 )
 @lang_option
-@click.option("--out", type=FilePath(path_type=Path, file_okay=False), default=".", help="Folder to write.")
+@click.option("--out", type=FOLDER, default=".", help="Folder to write.")
 @click.pass_context
 def animate(
     context: click.Context, exercise: str, seed: int, effects: str, figure_alone: bool, lang: str, out: Path

@@ -134,6 +134,12 @@ class FilePath(click.Path):
         return super().convert(value, param, ctx)
 
 
+PATH = FilePath(path_type=Path)
+FILE, FOLDER = FilePath(path_type=Path, dir_okay=False), FilePath(path_type=Path, file_okay=False)
+EXISTING_FILE = FilePath(path_type=Path, dir_okay=False, exists=True)
+EXISTING_FOLDER = FilePath(path_type=Path, file_okay=False, exists=True)
+
+
 class Lists(click.ParamType):
     """Comma-separated words, each among those known."""
 

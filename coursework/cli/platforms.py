@@ -10,8 +10,10 @@ import click
 
 from coursework.cli.assignments import for_practice, is_assignment, secret_made
 from coursework.cli.options import (
+    EXISTING_FILE,
+    FOLDER,
     LANGUAGE_DEFAULT,
-    FilePath,
+    PATH,
     Lists,
     WholeNumber,
     columns_option,
@@ -82,7 +84,7 @@ class _PlatformName(click.ParamType):
 )
 @click.option(
     "--roster",
-    type=FilePath(path_type=Path),
+    type=PATH,
     help=("CSV of the students, as the platform exports it; it identifies the answers that come back."),
 )
 @columns_option
@@ -97,7 +99,7 @@ class _PlatformName(click.ParamType):
 @parts_option
 @click.option(
     "--issued",
-    type=FilePath(path_type=Path, dir_okay=False, exists=True),
+    type=EXISTING_FILE,
     help=(
         "For gradescope: the issued.json of the build whose sheets were handed out, in place of exercises. "
         "With exercises and a roster, it is that of the same build."
@@ -107,7 +109,7 @@ class _PlatformName(click.ParamType):
     "--strict", is_flag=True, help="Stop without writing anything if the platform cannot do something."
 )
 @decimal_option
-@click.option("--out", type=FilePath(path_type=Path, file_okay=False), required=True, help="Folder to write.")
+@click.option("--out", type=FOLDER, required=True, help="Folder to write.")
 @click.option("--overwrite", is_flag=True, help="Replace another pool that was exported there before.")
 @click.pass_context
 def export(

@@ -8,7 +8,17 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from coursework.cli.options import DONE, FOUND, FilePath, NeedingExtra, decimal_option, opened, writes
+from coursework.cli.options import (
+    DONE,
+    FILE,
+    FOLDER,
+    FOUND,
+    PATH,
+    NeedingExtra,
+    decimal_option,
+    opened,
+    writes,
+)
 from coursework.cli.printing import by_reason, progress_bar, say, warn, warn_some
 from coursework.errors import BadInput, counted
 from coursework.messages import Message, localised
@@ -26,22 +36,17 @@ def _ready() -> None:
 
 
 @click.command(cls=NeedingExtra, ready=_ready)
-@click.argument("scans", nargs=-1, type=FilePath(path_type=Path))
+@click.argument("scans", nargs=-1, type=PATH)
 @click.option(
-    "--issued",
-    required=True,
-    type=FilePath(path_type=Path, dir_okay=False),
-    help="The issued.json of the build that printed the answer pages.",
+    "--issued", required=True, type=FILE, help="The issued.json of the build that printed the answer pages."
 )
 @click.option(
-    "--out",
-    type=FilePath(path_type=Path, file_okay=False),
-    help="Folder to write, or to continue with; by default read/ beside issued.json.",
+    "--out", type=FOLDER, help="Folder to write, or to continue with; by default read/ beside issued.json."
 )
 @click.option(
     "--typed",
     multiple=True,
-    type=FilePath(path_type=Path, dir_okay=False),
+    type=FILE,
     help="Readings typed on the page of the queue; by default typed.csv in the folder.",
 )
 @click.option(

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import click
 
-from coursework.cli.options import DONE, FOUND, FilePath, decimal_option, json_option
+from coursework.cli.options import DONE, FILE, FOUND, decimal_option, json_option
 from coursework.cli.printing import print_json, say, warn
 from coursework.errors import BadInput, counted
 
@@ -17,13 +17,7 @@ _STATED = re.compile(r"(?:(?P<name>[^=/\\]+)=)?(?P<folder>.+?)(?::(?P<weight>\d+
 
 @click.command()
 @click.argument("assignments", nargs=-1, required=True, metavar="[NAME=]MARKS[:WEIGHT]…")
-@click.option(
-    "--out",
-    type=FilePath(path_type=Path, dir_okay=False),
-    default="semester.csv",
-    show_default=True,
-    help="File to write.",
-)
+@click.option("--out", type=FILE, default="semester.csv", show_default=True, help="File to write.")
 @click.option(
     "--absent",
     type=click.Choice(("none", "zero", "excused")),

@@ -14,8 +14,8 @@ from typing import TYPE_CHECKING
 import click
 
 from coursework.cli.options import (
+    EXISTING_FOLDER,
     SITE_DATABASE,
-    FilePath,
     NeedingExtra,
     WholeNumber,
     exercise_argument,
@@ -34,15 +34,7 @@ if TYPE_CHECKING:
 
     from coursework.site.frame.settings import Entrance
 
-_LIBRARIES = (
-    "argon2",
-    "itsdangerous",
-    "psycopg",
-    "python_multipart",
-    "sqlalchemy",
-    "starlette",
-    "uvicorn",
-)
+_LIBRARIES = ("argon2", "itsdangerous", "psycopg", "python_multipart", "sqlalchemy", "starlette", "uvicorn")
 _LOOPBACK = "127.0.0.1"
 
 open_option = click.option("--open/--no-open", "opens", help="Open the page in the browser.")
@@ -110,7 +102,7 @@ def _lti_ready() -> None:
     "--lti",
     is_eager=True,
     callback=needing_extra(_lti_ready),
-    type=FilePath(path_type=Path, exists=True, file_okay=False),
+    type=EXISTING_FOLDER,
     metavar="FOLDER",
     help=("Serve the learning platforms of this folder's platforms.toml under /lti (see 'coursework lti')."),
 )

@@ -7,13 +7,13 @@ from pathlib import Path
 
 import click
 
-from coursework.cli.options import FilePath, json_option, lang_option, opened, print_notes
+from coursework.cli.options import FOLDER, json_option, lang_option, opened, print_notes
 from coursework.cli.printing import print_json
 from coursework.errors import BadInput
 
 
 @click.command()
-@click.argument("folder", type=FilePath(path_type=Path, file_okay=False), default=".")
+@click.argument("folder", type=FOLDER, default=".")
 @click.option(
     "--on", "day", type=click.DateTime(["%Y-%m-%d"]), help="Show what is due on this day; by default today."
 )

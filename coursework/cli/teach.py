@@ -10,9 +10,9 @@ import click
 
 from coursework.cli.options import (
     DONE,
+    FOLDER,
     FOUND,
     LANGUAGE_DEFAULT,
-    FilePath,
     Lists,
     WholeNumber,
     exercise_names,
@@ -42,7 +42,7 @@ if TYPE_CHECKING:
 @click.command()
 @click.argument("lessons", nargs=-1)
 @lang_option
-@click.option("--out", type=FilePath(path_type=Path, file_okay=False), help="Folder for the notebooks.")
+@click.option("--out", type=FOLDER, help="Folder for the notebooks.")
 @click.option(
     "--check",
     is_flag=True,
@@ -141,13 +141,7 @@ def _spare(paths: Sequence[Path], overwrite: bool) -> None:
     callback=spoken,
     help=f"Languages of the notebooks: fr, en, or both as fr,en; {LANGUAGE_DEFAULT}.",
 )
-@click.option(
-    "--out",
-    type=FilePath(path_type=Path, file_okay=False),
-    default="notebooks",
-    show_default=True,
-    help="Folder for the notebooks.",
-)
+@click.option("--out", type=FOLDER, default="notebooks", show_default=True, help="Folder for the notebooks.")
 @replace_option
 @click.pass_context
 def notebook(
@@ -242,7 +236,7 @@ _ANSWERS = {"end": "all", "apart": "odd", "none": ""}
     help="Place of the solutions: at the end, in a PDF and pages of their own, or nowhere.",
 )
 @click.option("--paper", type=click.Choice(["a4", "letter"]), default="a4", show_default=True)
-@click.option("--out", type=FilePath(path_type=Path, file_okay=False), required=True, help="Folder to write.")
+@click.option("--out", type=FOLDER, required=True, help="Folder to write.")
 @click.option(
     "--overwrite",
     is_flag=True,

@@ -9,7 +9,6 @@ then divided once by a power of ten: it is the double nearest to the decimal tha
 from __future__ import annotations
 
 import hashlib
-import inspect
 import math
 from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
@@ -24,7 +23,7 @@ import numpy as np
 from coursework.course.secrecy import Secret
 from coursework.errors import BadCourse, CourseworkError, MissingQuantity, Starved, nearest
 from coursework.messages import Message, as_message
-from coursework.model import Bound, Detectable, Exercise, GivenSpec, Part
+from coursework.model import Detectable, Exercise, GivenSpec, Part
 from coursework.quantities.graph import Graph
 
 if TYPE_CHECKING:
@@ -45,12 +44,6 @@ def _words(
     key = stream.encode() if secret is None else secret.digest("draw", stream)
     bits = hashlib.shake_128(key).digest(8 * BLOCK * width)
     return np.frombuffer(bits, "<u8").reshape(BLOCK, width)
-
-
-def _evaluate(bound: Bound | None, drawn: Mapping[str, np.ndarray]) -> Any:
-    if not callable(bound):
-        return bound
-    return bound(*[drawn[n] for n in inspect.signature(bound).parameters])
 
 
 def _constant(spec: GivenSpec) -> float:
@@ -100,7 +93,8 @@ def _draw_one(spec: GivenSpec, words: np.ndarray, drawn: Mapping[str, np.ndarray
     if spec.is_fixed:
         return np.full(words.shape, _constant(spec))
     grid = _Grid.of(spec.step)
-    low, high = grid.first(_evaluate(spec.low, drawn)), grid.last(_evaluate(spec.high, drawn))
+    low, high = spec.bounds(drawn)
+    low, high = grid.first(low), grid.last(high)
     count = np.maximum(high - low + 1, 0)
     without_zero = (low <= 0) & (high >= 0) if spec.nonzero else np.zeros_like(count, dtype=bool)
     count = np.where(without_zero, count - 1, count)
@@ -117,9 +111,9 @@ def _all_values(spec: GivenSpec, partial: Mapping[str, Any]) -> list[float | str
     if spec.is_fixed:
         return [_constant(spec)]
     grid = _Grid.of(spec.step)
-    low = int(grid.first(_evaluate(spec.low, partial)))
-    high = int(grid.last(_evaluate(spec.high, partial)))
-    return [float(grid.value(np.int64(k))) for k in range(low, high + 1) if k or not spec.nonzero]
+    low, high = spec.bounds(partial)
+    steps = range(int(grid.first(low)), int(grid.last(high)) + 1)
+    return [float(grid.value(np.int64(k))) for k in steps if k or not spec.nonzero]
 
 
 def _empty_ranges(drawn: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:

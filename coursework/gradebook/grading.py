@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from coursework.course.course import Course
-from coursework.errors import BadInput
+from coursework.errors import BadInput, first_few
 from coursework.gradebook import book as gradebook
 from coursework.gradebook.book import Gradebook, Sitting
 from coursework.gradebook.changes import CHANGES_COLUMNS, EarlierMarks, History
@@ -316,7 +316,7 @@ def _kept_copy(marks: Path) -> str:
 
 def nothing_in(submissions: Sequence[Path], rejected: Sequence[Rejected]) -> str:
     """Return the message that nothing can be marked, with the reason."""
-    where = ", ".join(map(str, submissions[:3])) + (", …" if len(submissions) > 3 else "")
+    where = first_few([*map(str, submissions)], 3)
     message = Message("nothing in {where} can be marked, so nothing is written", where=where)
     if not rejected:
         return Message(

@@ -10,7 +10,7 @@ from typing import Any
 
 from coursework.course.answer_keys import part_called
 from coursework.course.course import Course
-from coursework.errors import CourseworkError, UnknownName, nearest
+from coursework.errors import CourseworkError, UnknownName, first_few, nearest
 from coursework.gradebook.conflicting_sheets import Doubts
 from coursework.gradebook.rows import AnswerRow, PlatformFile, Rejected, RowOrigin, joined_by_and
 from coursework.issuing.issued import Issued
@@ -205,8 +205,7 @@ def name_hint(name: str, names: Iterable[str]) -> str:
 def _near_or_all(name: str, names: Sequence[str]) -> str:
     if hint := name_hint(name, names):
         return hint
-    listed = ", ".join(names[:_LISTED]) + (", …" if len(names) > _LISTED else "")
-    return Message("; issued: {names}", names=listed)
+    return Message("; issued: {names}", names=first_few(names, _LISTED))
 
 
 def placed_sheets(

@@ -7,7 +7,7 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from coursework.errors import counted
+from coursework.errors import counted, first_few
 from coursework.issuing.exam_columns import cell, extra_time_of, group_of, room_of, seat_of
 from coursework.issuing.identity import NUMBER
 from coursework.issuing.papers import IssuedPaper, natural
@@ -100,14 +100,14 @@ def seating_faults(students: Sequence[Student]) -> Iterator[Message]:
                 "the roster gives the seat {seat} to {count}: {names}",
                 seat=" ".join(filter(None, (room, seat.upper()))),
                 count=counted(len(names), "student"),
-                names=", ".join(names[:_LISTED]),
+                names=first_few(names, _LISTED),
             )
     without = [student.name for student in students if not room_of(student.columns)]
     if without and len(without) < len(students):
         yield Message(
             "{count} without a room: {names}",
             count=counted(len(without), "student"),
-            names=", ".join(without[:_LISTED]) + (", …" if len(without) > _LISTED else ""),
+            names=first_few(without, _LISTED),
         )
 
 

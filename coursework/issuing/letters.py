@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from coursework.errors import counted
+from coursework.errors import counted, first_few
 from coursework.messages import Message
 from coursework.rendering.renderer import Renderer
 
@@ -16,8 +16,7 @@ def unprinted_names(renderer: Renderer, names: Iterable[str]) -> list[str]:
     lacking = {name: "".join(letters) for name in names if (letters := renderer.undrawn(name))}
     if not lacking:
         return []
-    named = ", ".join(f"{name} ({letters})" for name, letters in list(lacking.items())[:_NAMED])
-    more = ", …" if len(lacking) > _NAMED else ""
+    named = first_few([f"{name} ({letters})" for name, letters in lacking.items()], _NAMED)
     note = Message(
         (
             "{names} with letters that no font of the PDF has, printed as squares: {named}; put a font "
@@ -25,6 +24,6 @@ def unprinted_names(renderer: Renderer, names: Iterable[str]) -> list[str]:
             " letters (.ttf, .otf) into templates/fonts of the course"
         ),
         names=counted(len(lacking), "name"),
-        named=named + more,
+        named=named,
     )
     return [note]

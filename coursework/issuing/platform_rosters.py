@@ -6,7 +6,7 @@ import re
 from collections.abc import Sequence
 from typing import NamedTuple
 
-from coursework.errors import counted
+from coursework.errors import counted, first_few
 from coursework.issuing.identity import EMAIL, FIRST_NAME, is_called, plain
 from coursework.messages import Message
 
@@ -31,21 +31,19 @@ def without_marks(header: Sequence[str], rows: Sequence[RosterLine]) -> tuple[li
             columns = frozenset(marks(header, rows))
             notes = []
             if gone:
-                named = ", ".join(name or "(no name)" for name in gone[:3])
                 notes.append(
                     Message(
                         "{lines} without a student left out: {named}",
                         lines=counted(len(gone), "line"),
-                        named=named + (", …" if len(gone) > 3 else ""),
+                        named=first_few([name or "(no name)" for name in gone], 3),
                     )
                 )
             if columns:
-                named = ", ".join(header[c].strip() for c in sorted(columns)[:2])
                 notes.append(
                     Message(
                         "{columns} of marks not used: {named}",
                         columns=counted(len(columns), "column"),
-                        named=named + (", …" if len(columns) > 2 else ""),
+                        named=first_few([header[c].strip() for c in sorted(columns)], 2),
                     )
                 )
             return students, Unused(columns, tuple(notes), is_this in (_is_canvas, _is_sakai))

@@ -18,7 +18,7 @@ from coursework.course.course import Course
 from coursework.course.exercise import CourseExercise
 from coursework.course.secrecy import Secret
 from coursework.course.variant import Variant
-from coursework.errors import BadInput, counted, nearest
+from coursework.errors import BadInput, counted, first_few, nearest
 from coursework.issuing.assignment import AskedExercise, Assignment
 from coursework.issuing.exam_columns import room_of, seat_of
 from coursework.issuing.flaws import try_judges
@@ -192,18 +192,15 @@ class _Assigner:
             self.notes.append(
                 Message(
                     "papers kept although no longer on the roster: {names}",
-                    names=", ".join(gone[:5]) + (", …" if len(gone) > 5 else ""),
+                    names=first_few(gone, 5),
                 )
             )
         if issued and late:
-            names = ", ".join(s.name for s in late[:5])
-            more = ", …" if len(late) > 5 else ""
             self.notes.append(
                 Message(
-                    "{papers} issued before stay as they are; added: {names}{more}",
+                    "{papers} issued before stay as they are; added: {names}",
                     papers=counted(len(issued), "paper"),
-                    names=names,
-                    more=more,
+                    names=first_few([s.name for s in late], 5),
                 )
             )
         result = [

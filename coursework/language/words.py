@@ -12,7 +12,7 @@ from functools import cache, partial
 from pathlib import Path
 from typing import Any
 
-from coursework.errors import BadCourse, UnknownName
+from coursework.errors import BadCourse, UnknownName, first_few
 from coursework.system.cache import cached_result
 
 _FOLDER = Path(__file__).parent
@@ -88,8 +88,7 @@ def _compare(texts: Mapping[str, object], english: Mapping[str, object], file: P
     """Refuse words that the engine could not use in the place of the English ones."""
     if missing := sorted(english.keys() - texts.keys()):
         raise BadCourse(
-            f"{file} lacks {', '.join(missing[:_FAULTS])}{', …' if len(missing) > _FAULTS else ''}: "
-            "copy from en.toml beside it and translate"
+            f"{file} lacks {first_few(missing, _FAULTS)}: copy from en.toml beside it and translate"
         )
     faults = [
         *(

@@ -68,10 +68,6 @@ def _samples(given: Mapping[str, Any]) -> dict[str, Any]:
         elif spec.is_fixed:
             found[name] = np.full(_SAMPLES, float(spec.default))
         else:
-            low, high = (_bound(bound, found) for bound in (spec.low, spec.high))
+            low, high = spec.bounds(found)
             found[name] = low + (high - low) * rng.random(_SAMPLES)
     return found
-
-
-def _bound(bound: Any, found: Mapping[str, Any]) -> Any:
-    return bound(*(found[name] for name in bound.__code__.co_varnames)) if callable(bound) else bound

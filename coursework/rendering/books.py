@@ -136,7 +136,7 @@ def _typst_pieces(
 def _led(text: str, *, last: bool) -> Iterator[tuple[str, bool]]:
     """Yield running text in parts, each with whether it keeps to what follows it: a paragraph in bold alone,
     as a heading is; a short one that ends with a colon; and the ``last`` one where it leads to the next
-    piece."""
+    piece, as one that ends with a colon does."""
     *paragraphs, end = text.strip("\n").split("\n\n")
     plain: list[str] = []
     for paragraph in paragraphs:
@@ -146,7 +146,7 @@ def _led(text: str, *, last: bool) -> Iterator[tuple[str, bool]]:
             plain = []
         else:
             plain.append(paragraph)
-    if last or _RUN_IN.fullmatch(end):
+    if last or end.rstrip().endswith(":") or _RUN_IN.fullmatch(end):
         yield "\n\n".join(plain), False
         yield end, True
     else:

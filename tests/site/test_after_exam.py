@@ -62,6 +62,14 @@ def test_a_change_is_previewed_kept_and_taken_back(desk):
     assert (points(desk), steps_of(desk)) == (before, ())
 
 
+def test_symbols_of_questions_are_typeset_as_students_see_them(desk):
+    for end in ("/after", "/questions"):
+        table = desk.page(TEACHER, end).text.rpartition("<tbody>")[2]
+        assert table.count("<math") >= len(class_now(desk.site, desk.number).questions) - 1, end
+        assert "r_A" not in table
+        assert "…" in table
+
+
 def test_several_changes_are_taken_back_at_once_unless_others_stand_by_then(desk):
     before, browser, path = points(desk), desk.browser(TEACHER), f"/desk/{desk.number}/after"
     for asked in ({"kind": "weight", "points": "9"}, {"kind": "bonus"}, {"kind": "neutral"}):

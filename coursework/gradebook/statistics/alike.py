@@ -13,6 +13,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from coursework.errors import first_few
 from coursework.gradebook.statistics.marks import columns_of
 
 COLUMNS = ("student", "exercise", "seed", "like seed", "issued to", "answers", "of")
@@ -36,8 +37,7 @@ class AlikeSheet(NamedTuple):
 
     def row(self) -> dict[str, Any]:
         """Return a line of ``alike.csv``."""
-        more = ", …" if len(self.owners) > _NAMES else ""
-        text = ", ".join(self.owners[:_NAMES]) + more
+        text = first_few(self.owners, _NAMES)
         return dict(
             zip(
                 COLUMNS,

@@ -18,6 +18,7 @@ from coursework.sheets.handout import prompt
 
 SHORT = 44  #: characters of a question's words, or of a mistake's, that stand for it
 _OPEN = re.compile(r"\{\w+\}")
+_PIECE = re.compile(r"(?:\$[^$]+\$|[^\s$])+|\$")  #: a word, with the formulas in it
 
 
 class ReportedQuestion(Protocol):
@@ -73,14 +74,21 @@ class Names:
 
     def question(self, part: ReportedQuestion) -> str:
         """Return the words of the question, shortened, as plain text; the part's id where there are none."""
+        return shortened(plain_line(self._prompt(part), self._lang)) or part.part
+
+    def question_markdown(self, part: ReportedQuestion) -> str:
+        """Return the words of the question, shortened, with their formulas; the part's id where there are
+        none."""
+        return _shortened_markdown(self._prompt(part), self._lang) or as_it_is(part.part)
+
+    def _prompt(self, part: ReportedQuestion) -> str:
         exercise, requested = self._exercise_and_part(part)
         if exercise is None or requested is None or self._lang not in exercise.languages:
-            return part.part
+            return ""
         try:
-            texts = prompt(exercise.variant(0, self._lang, (ALL,)), requested)
+            return prompt(exercise.variant(0, self._lang, (ALL,)), requested)
         except CourseworkError:
-            return part.part
-        return shortened(plain_line(texts, self._lang)) or part.part
+            return ""
 
     # ---------------------------------------------------------------- mistakes
 
@@ -128,12 +136,28 @@ class Names:
             return []  # a course without this text has no words for mistakes
 
 
+def as_it_is(name: str) -> str:
+    """Escape a name from a file as Markdown."""
+    one_line = " ".join("".join(c if c.isprintable() else " " for c in name).split())
+    return re.sub(r"([!-/:-@\[-`{-~])", r"\\\1", one_line) or "–"
+
+
 def shortened(text: str, most: int = SHORT) -> str:
     """Shorten a text at the end of a word, with an ellipsis."""
     if len(text) <= most:
         return text
     full = text[:most].rpartition(" ")[0] or text[: most - 1]
     return full.rstrip(" ,;:.") + "…"
+
+
+def _shortened_markdown(text: str, lang: str) -> str:
+    """Shorten a text at the end of a word, with an ellipsis; a formula stays whole."""
+    pieces, length = _PIECE.findall(text.replace("**", "")), -1
+    for count, piece in enumerate(pieces):
+        length += 1 + len(plain_line(piece, lang) if "$" in piece else piece)
+        if length > SHORT and count:
+            return " ".join(pieces[:count]).rstrip(" ,;:.") + "…"
+    return " ".join(pieces)
 
 
 def _common(texts: list[str]) -> str:

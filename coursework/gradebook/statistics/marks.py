@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from coursework.errors import BadInput, counted
+from coursework.errors import BadInput, counted, first_few
 from coursework.gradebook.columns import PRESENCE, SITTING, VERDICTS
 from coursework.gradebook.presence import AWAY
 from coursework.messages import Message
@@ -233,8 +233,7 @@ def _no_marks(folder: Path) -> BadInput:
             "there is no folder {folder}; give the one written by 'coursework grade'", folder=folder
         )
     results = sorted(p.name for p in folder.iterdir())
-    names = ", ".join(results[:6]) + (", …" if len(results) > 6 else "")
-    found = Message("found {names}", names=names) if results else Message("it is empty")
+    found = Message("found {names}", names=first_few(results, 6)) if results else Message("it is empty")
     below = sorted(p.parent for p in folder.glob("*/marks.csv"))
     would_do = (
         Message("did you mean {inside}?", inside=below[0])

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from itertools import pairwise
 from typing import Any
@@ -16,7 +15,7 @@ from coursework.figures.charts import bars, histogram
 from coursework.figures.plot import written as printed
 from coursework.figures.text import LabelText, joined, read
 from coursework.gradebook.columns import VERDICTS
-from coursework.gradebook.statistics.captions import SHORT, Names
+from coursework.gradebook.statistics.captions import SHORT, Names, as_it_is
 from coursework.gradebook.statistics.measures import (
     BINS,
     ENOUGH,
@@ -194,7 +193,7 @@ class _StatisticsPage:
         rows = tuple(
             (
                 self._name(parts[item.part]),
-                self.names.says_markdown(item) or _as_it_is(self.names.says(item) or item.name),
+                self.names.says_markdown(item) or as_it_is(self.names.says(item) or item.name),
                 self._number(item.count),
                 self._percent(item.share),
                 self._decimal(item.lost, 1),
@@ -248,7 +247,7 @@ class _StatisticsPage:
         if costly is None:
             return reading["no_mistake"]
         return reading["costly"].format(
-            name=f"*{_as_it_is(self.names.mistake(costly, most=_QUOTED))}*",
+            name=f"*{as_it_is(self.names.mistake(costly, most=_QUOTED))}*",
             exercise=self._title(costly.exercise),
             count=self._number(costly.count),
             answers=self._number(round(costly.count / costly.share)),
@@ -270,7 +269,7 @@ class _StatisticsPage:
     def _title(self, name: str) -> str:
         """Return an exercise's title as Markdown."""
         exercise = self.names.exercise(name)
-        return exercise.title(self.lang) if exercise and self.lang in exercise.languages else _as_it_is(name)
+        return exercise.title(self.lang) if exercise and self.lang in exercise.languages else as_it_is(name)
 
     def _heading(self, name: str) -> str:
         """Return an exercise's title as plain text."""
@@ -282,11 +281,11 @@ class _StatisticsPage:
 
     def _name(self, part: PartStatistics) -> str:
         symbol = self.names.symbol(part)
-        return self._numbered(part, f"${symbol}$" if symbol else _as_it_is(self.names.question(part)))
+        return self._numbered(part, f"${symbol}$" if symbol else self.names.question_markdown(part))
 
     def _name_and_id(self, part: PartStatistics) -> str:
         """Return the name of a part with its id, for the table in which authors look parts up."""
-        name, names = self._name(part), _as_it_is(part.part)
+        name, names = self._name(part), as_it_is(part.part)
         return name if name == names else f"{name} ({names})"
 
     def _with(self, part: PartStatistics, value: str) -> str:
@@ -346,9 +345,3 @@ def _shared_out(rows: Sequence[PartStatistics], most: int) -> list[Sequence[Part
 def _short(name: str, most: int = 40) -> str:
     """Shorten a name from a file to one line of a chart."""
     return cut_short(" ".join(name.split()), most)
-
-
-def _as_it_is(name: str) -> str:
-    """Escape a name from a file as Markdown."""
-    one_line = " ".join("".join(c if c.isprintable() else " " for c in name).split())
-    return re.sub(r"([!-/:-@\[-`{-~])", r"\\\1", one_line) or "–"

@@ -230,7 +230,6 @@ def _page(request: Request, now: ClassState, fields: Mapping[str, str], message:
         changed = Restated((), ())
         message = message or localised(fault)
     names_of = Names(now.course, lang)
-    captions = {(one.exercise, one.part): names_of.question(one) for one in exam.table}
     current = exam.distribution()
     batches = after_words.batch_texts(exam, exam.decisions.standing_steps, lang)
     aside = after_words.batch_texts(exam, exam.put_aside, lang)
@@ -248,7 +247,8 @@ def _page(request: Request, now: ClassState, fields: Mapping[str, str], message:
             (moment(one.made, lang) if one.made else "", one, text) for one, text in (*batches, *aside)
         ],
         "offered": OFFERED,
-        "caption": lambda question: captions[question.exercise, question.part],
+        "caption": names_of.question,
+        "typeset": names_of.question_markdown,
         "number": lambda value: after_words.number(value, lang),
         "share": lambda value: localise(f"{value:.2f}", lang),
         "points_text": lambda question: after_words.points_text(question, lang),

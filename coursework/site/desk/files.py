@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import base64
 from collections.abc import Callable, Mapping, Sequence
+from functools import partial
 from pathlib import Path, PurePath
 from tempfile import TemporaryDirectory
 from typing import Any
@@ -17,7 +18,7 @@ from coursework.database.instructor_queries import decided_since
 from coursework.database.marking import mark_submission
 from coursework.database.permissions import Permission
 from coursework.database.submissions import insert_submission, rows_of, submissions_of
-from coursework.errors import BadInput, CourseworkError
+from coursework.errors import BadInput, CourseworkError, first_few
 from coursework.gradebook.book import marks_rows, rejected_rows, summary_table
 from coursework.gradebook.class_points import SCORES, class_points
 from coursework.gradebook.columns import REJECTED_COLUMNS, marks_columns
@@ -40,7 +41,7 @@ from coursework.system.tables import SPREADSHEETS, Spreadsheet, csv_file, json_t
 from coursework.system.zips import zipped
 
 _NAME = 120  #: bytes of a file's name; longer names lose their beginning
-_NAMED = 10  #: students named in a message
+_named = partial(first_few, most=10, with_count=True)  #: students in a message
 _DECISIONS = (
     "made",
     "by",
@@ -183,7 +184,7 @@ def roster_in(request: Request) -> Response:
     messages = [texts["roster_came"].format(len(students) - len(strangers), len(students))]
     messages += [localised(line) for line in notes]
     if strangers:
-        messages.append(texts["roster_strangers"].format(_list(strangers)))
+        messages.append(texts["roster_strangers"].format(_named(strangers)))
     return files_page(request, messages)
 
 
@@ -191,10 +192,6 @@ def _merged(
     before: Mapping[str, Mapping[str, str]], columns: Mapping[str, Mapping[str, str]]
 ) -> dict[str, dict[str, str]]:
     return {name: {**before.get(name, {}), **added} for name, added in columns.items()}
-
-
-def _list(names: Sequence[str]) -> str:
-    return ", ".join(names[:_NAMED]) + (f", … ({len(names)})" if len(names) > _NAMED else "")
 
 
 # -------------------------------------------------------------------------- out
@@ -423,7 +420,7 @@ def gradebook(request: Request) -> Response:
         "kept": filled.unchanged,
     }
     outcomes["provisional" if form.text("provisional") else "left_out"] = tuple(waiting)
-    messages += [texts[key].format(len(names), _list(names)) for key, names in outcomes.items() if names]
+    messages += [texts[key].format(len(names), _named(names)) for key, names in outcomes.items() if names]
     return files_page(request, messages, filled, file_name(sent))
 
 

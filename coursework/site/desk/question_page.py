@@ -52,7 +52,7 @@ def questions(request: Request) -> Response:
     names = Names(now.course, request.lang)
     by_question = {(item.exercise, item.part): item for item in class_statistics.parts}
     asked_for = [QuestionRow(*item, number, by_question.get(item)) for item, number in now.questions.items()]
-    listed = [replace(item, words=names.question(item)) for item in asked_for]
+    listed = [replace(item, words=names.question_markdown(item)) for item in asked_for]
     if request.query_params.get("sort") == "hard":
         listed.sort(
             key=lambda item: item.statistics.mean if item.statistics and item.statistics.marked else 2.0

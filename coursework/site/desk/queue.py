@@ -300,9 +300,10 @@ def _counts(now: ClassState) -> list[tuple[str, int]]:
 
 
 def _done(now: ClassState) -> int:
-    """Return the number of decided answers."""
-    answers = (answer for group in now.groups for answer in group.members)
-    return sum(now.decisions.standing(answer.sheet, answer.mark) is not None for answer in answers)
+    """Return the number of answers of which nothing is left to decide."""
+    return sum(len(group.members) for group in now.groups) - sum(
+        len(one.members) for one in now.open.values()
+    )
 
 
 def _can_undo(request: Request, now: ClassState) -> bool:

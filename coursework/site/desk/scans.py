@@ -14,6 +14,7 @@ from coursework.database.class_state import ClassState
 from coursework.database.permissions import Permission
 from coursework.database.scans import last_typed, name_scanned, picture_scanned, put_typed, withdraw_typed
 from coursework.errors import BadInput
+from coursework.issuing.answer_papers import AnswerPaper
 from coursework.language.words import words
 from coursework.scanning.gathering import AnswerCard
 from coursework.scanning.page_reading import cut
@@ -167,19 +168,18 @@ def _type(
 ) -> None:
     """Store the texts that are typed on cards, each as a decision of its own. Raises BadInput: there is no
     such page."""
-    for card, answer in answers:
-        code, _, number = answer.partition(" ")
-        is_page = code in scans.papers.papers and number in _numbers(scans, code)
-        if card.exercise == PAGE and answer and not is_page:
-            raise BadInput(request.words["scans"]["no_page"])
+    papers = {
+        card.id: _paper_named(request, scans, answer)
+        for card, answer in answers
+        if card.exercise == PAGE and answer
+    }
     with request.site.store.begin() as connection:
         for card, answer in answers:
             student, exercise, seed, part, coordinate = place_of_card(card)
             text = Typed(student, exercise, seed, part, coordinate, answer, " ".join(card.pages))
             put_typed(connection, now.about.id, text, request.actor.name, request.received_at)
-            if exercise == PAGE and answer:
-                student = scans.papers.papers[answer.partition(" ")[0]].student
-                name_scanned(connection, now.about.id, part, student)
+            if card.id in papers:
+                name_scanned(connection, now.about.id, part, papers[card.id].student)
             about = {
                 "assignment": now.about.id,
                 "exercise": exercise,
@@ -188,8 +188,12 @@ def _type(
             request.note(connection, "scan typed", **about)
 
 
-def _numbers(scans: ClassScans, code: str) -> list[str]:
-    return [str(page.number) for page in scans.papers[code]]
+def _paper_named(request: Request, scans: ClassScans, text: str) -> AnswerPaper:
+    """Return the paper of the code and the page in a text. Raises BadInput: there is no such page."""
+    code, _, number = text.partition(" ")
+    if code not in scans.papers or all(str(page.number) != number for page in scans.papers[code]):
+        raise BadInput(request.words["scans"]["no_page"])
+    return scans.papers.papers[code]
 
 
 def _card_response(

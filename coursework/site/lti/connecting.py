@@ -12,12 +12,12 @@ from starlette.responses import Response
 from coursework.database.accounts import account_of
 from coursework.database.identities import link_identity
 from coursework.database.permissions import Permission
-from coursework.site.frame.attempts import Attempt
 from coursework.site.frame.budgets import PLAIN
 from coursework.site.frame.requests import HTTPException, Request, Route
 from coursework.site.frame.responses import redirect
 from coursework.site.frame.settings import Site
 from coursework.site.people import guessing, passwords
+from coursework.site.people.accounts import own_attempt
 
 if TYPE_CHECKING:
     from coursework.platforms.lti.launch import Launch
@@ -78,12 +78,6 @@ def _tie(request: Request, issuer: str, subject: str, platform: str) -> None:
         request.note(connection, "connected a platform", **about)
 
 
-def _attempt(request: Request) -> Attempt:
-    with request.site.store.reading() as connection:
-        mine = account_of(connection, request.user.id)
-    return guessing.attempt_of(request, mine.login) if mine is not None else Attempt()
-
-
 ROUTES = (
     Route(
         "/connect/{token}",
@@ -92,6 +86,6 @@ ROUTES = (
         takes_forms=True,
         limit="sign_in",
         budget=PLAIN,
-        attempt=_attempt,
+        attempt=own_attempt,
     ),
 )

@@ -219,11 +219,7 @@ class SiteHost:
                 for row in rows_of(connection, state.assignment.id, state.done[-1].id)
                 if isinstance(row, AnswerRow)
             ]
-        answers = {(row.exercise, row.seed, row.part): str(row.answer or "") for row in rows}
-        return {
-            name: answers.get((box.variant.exercise.name, str(box.variant.seed), box.part.id), "")
-            for name, box in paper.boxes.items()
-        }
+        return paper.texts_of({(row.exercise, row.seed, row.part): str(row.answer or "") for row in rows})
 
     def _rules(self, request: LTIRequest, state: AssignmentState) -> list[str]:
         """Return the rules of the assignment: closing time, remaining attempts, and the attempt that

@@ -326,11 +326,7 @@ def receipt(request: Request) -> Response:
         row = receipts.find(state.done, str(request.path_params["code"]))
         content = receipts.receipt_content(connection, row, assignment.name, request.user.name)
     again = request.query_params.get("again", "")
-    answers = {(e, s, p): a for e, s, p, a in content["answers"]}
-    texts = {
-        name: answers.get((box.variant.exercise.name, str(box.variant.seed), box.part.id), "")
-        for name, box in paper.boxes.items()
-    }
+    texts = paper.texts_of({(e, s, p): a for e, s, p, a in content["answers"]})
     return request.render(
         "site/student/assignment_receipt",
         state=state,

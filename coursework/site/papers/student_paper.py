@@ -191,6 +191,13 @@ class StudentPaper:
             return ReadBack("unreadable", words(box.variant.lang, "site")["read_back"]["incomplete"])
         return read_back(box.variant, box.part, text)
 
+    def texts_of(self, answers: Mapping[tuple[str, str, str], str]) -> dict[str, str]:
+        """Return the texts of answers, by exercise, seed and part, for each box of the page."""
+        return {
+            name: answers.get((field.exercise, str(field.seed), field.part), "")
+            for name, field in self.fields.items()
+        }
+
     def texts(self, form: FormData) -> dict[str, str]:
         """Return the answers in a form of the page, by box; ticks of one box are joined.
 

@@ -226,8 +226,11 @@ def account(request: Request) -> Response:
 
 def account_attempt(request: Request) -> Attempt:
     """Return the attempt counted for a form with the current password."""
-    if "now" not in request.form.texts:
-        return Attempt()
+    return own_attempt(request) if "now" in request.form.texts else Attempt()
+
+
+def own_attempt(request: Request) -> Attempt:
+    """Return the attempt counted for a person's own password."""
     with request.site.store.reading() as connection:
         mine = account_of(connection, request.user.id)
     return guessing.attempt_of(request, mine.login) if mine is not None else Attempt()
