@@ -22,8 +22,8 @@ from coursework.gradebook.rows import TITLES, Rejected
 from coursework.gradebook.waiting import (
     SHOWN_ON_REQUEST,
     AnswerGroup,
-    AnswerToReview,
     Measure,
+    OpenGroup,
     SheetOfStudent,
     groups,
     margins_of,
@@ -79,18 +79,6 @@ class UnplacedRow:
     def place(self) -> str:
         """Place of the row in its file, in the language of the current messages."""
         return localised(self.row.place)
-
-
-@dataclass(frozen=True)
-class OpenGroup:
-    """Group of answers, with those of its members that still wait for a person."""
-
-    group: AnswerGroup
-    members: tuple[AnswerToReview, ...]
-
-    @property
-    def why(self) -> str:
-        return self.group.why
 
 
 @dataclass
@@ -280,10 +268,7 @@ class ClassState:
     def open(self) -> dict[str, OpenGroup]:
         """Groups with undecided answers, by id, in order; including those that are shown only on request."""
         current = {sheet_of_student(graded): graded for graded in self.graded.values()}
-        return {
-            group.id: OpenGroup(group, members)
-            for group, members in undecided(self.groups, self.decisions, current)
-        }
+        return {one.group.id: one for one in undecided(self.groups, self.decisions, current)}
 
     @property
     def waiting(self) -> int:

@@ -40,9 +40,9 @@ from coursework.gradebook.statistics.measures import ENOUGH, WEAK, PartStatistic
 from coursework.gradebook.statistics.of_class import marks_of_class
 from coursework.gradebook.waiting import (
     SHOWN_ON_REQUEST,
-    AnswerGroup,
     AnswerToReview,
     Measure,
+    OpenGroup,
     SheetOfStudent,
     groups,
     margins_of,
@@ -302,13 +302,11 @@ class Exam:
         return found
 
     @cached_property
-    def open(self) -> list[tuple[AnswerGroup, tuple[AnswerToReview, ...]]]:
+    def open(self) -> list[OpenGroup]:
         """Groups of answers to review, each with those of its answers on which nobody has decided."""
         found = groups(self.machine, self.measures, self.questions, self.course)
         current = {sheet_of_student(graded): graded for graded in self.adjusted}
-        return [
-            one for one in undecided(found, self.decisions, current) if one[0].why not in SHOWN_ON_REQUEST
-        ]
+        return [one for one in undecided(found, self.decisions, current) if one.why not in SHOWN_ON_REQUEST]
 
     @cached_property
     def cards(self) -> dict[str, tuple[int, int]]:

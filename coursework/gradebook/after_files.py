@@ -10,7 +10,6 @@ from coursework.course.course import Course
 from coursework.errors import BadInput
 from coursework.gradebook.after import Exam
 from coursework.gradebook.book import Gradebook
-from coursework.gradebook.class_marking import marked
 from coursework.gradebook.decisions import Decision, DecisionFiles
 from coursework.gradebook.edited_marks import EditedMarks
 from coursework.gradebook.feedback_form import FeedbackForm
@@ -42,10 +41,7 @@ class MarkedFolder:
         self.issued = Issued.read(issued)
         self.files = DecisionFiles(folder)
         standing = EditedMarks(course, self.issued, path)
-        self._sheets = standing.sheets
-        earlier = len(self._sheets.rejected)
-        self._machine = list(marked(course, self.issued, self._sheets))
-        standing.refuse(self._sheets.rejected[earlier:])
+        self._sheets, self._machine = standing.sheets, standing.marked()
         with open_csv(path) as file:
             has_commas = delimiter_of(file.readline()) == ";"
         self._spreadsheet = SPREADSHEETS["comma" if has_commas else "point"]

@@ -16,6 +16,7 @@ from typing import Any, NamedTuple
 from coursework.course.course import Course
 from coursework.errors import BadInput, nearest
 from coursework.gradebook.changes import lines_of, rows_of
+from coursework.gradebook.class_marking import marked
 from coursework.gradebook.columns import MARKS_COLUMNS, REJECTED_COLUMNS, SITTING, VERDICTS
 from coursework.gradebook.graded_sheet import Graded
 from coursework.gradebook.placing import Sheets, placed_sheets
@@ -53,7 +54,7 @@ class EditedMarks:
 
     def __init__(self, course: Course, issued: Issued, path: Path) -> None:
         self.path = path
-        self._is_pool = issued.is_pool
+        self._course, self._issued = course, issued
         self._lines: dict[str, _MarksLine] = {}
         rows: Iterable[AnswerRow] = self._rows()
         if issued.is_pool:
@@ -80,6 +81,13 @@ class EditedMarks:
                 count=len(rejected) - 1,
             )
 
+    def marked(self) -> list[Graded]:
+        """Mark the answers of the file again. Raises BadInput: a sheet cannot be marked."""
+        earlier = len(self.sheets.rejected)
+        machine = list(marked(self._course, self._issued, self.sheets))
+        self.refuse(self.sheets.rejected[earlier:])
+        return machine
+
     def _rows(self) -> Iterator[AnswerRow]:
         met: dict[tuple[str, ...], str] = {}
         for number, row in _table(self.path):
@@ -97,7 +105,7 @@ class EditedMarks:
             )
             origin = RowOrigin(sitting=int(sitting) if sitting.isdecimal() and len(sitting) < 10 else 0)
             names = row["student"], row["exercise"], row["seed"], row["part"]
-            yield AnswerRow(*names, row["answer"], location, origin=origin if self._is_pool else None)
+            yield AnswerRow(*names, row["answer"], location, origin=origin if self._issued.is_pool else None)
 
     def of(self, graded: Graded) -> Graded:
         """Return the sheet with the marks of the file.

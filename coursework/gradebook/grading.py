@@ -242,9 +242,7 @@ def grade_edited_marks(
     standing = EditedMarks(course, issued, marks)
     sheets = standing.sheets
     feedback = usual_feedback(sheets) if feedback is None else feedback
-    earlier = len(sheets.rejected)
-    machine = list(marked(course, issued, sheets))
-    standing.refuse(sheets.rejected[earlier:])
+    machine = standing.marked()
     check_steps(decisions.standing_steps, issued)
     adjustments = decisions.adjustments
     book = Gradebook(adjustments.on(issued), sheets.rows_in, 0, sheets.rejected, sheets.warnings)

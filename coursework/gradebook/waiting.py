@@ -66,6 +66,17 @@ class AnswerGroup:
         return self.members[0]
 
 
+class OpenGroup(NamedTuple):
+    """Group of answers, with those of its members that still wait for a person."""
+
+    group: AnswerGroup
+    members: tuple[AnswerToReview, ...]
+
+    @property
+    def why(self) -> str:
+        return self.group.why
+
+
 class Measure(NamedTuple):
     """Values by which the answers of a sheet are compared: margins and references, by part."""
 
@@ -171,7 +182,7 @@ def _drawn(course: Course, questions: PaperQuestions) -> frozenset[Question]:
 
 def undecided(
     groups: Iterable[AnswerGroup], decisions: Decisions, current: Mapping[SheetOfStudent, Graded]
-) -> Iterator[tuple[AnswerGroup, tuple[AnswerToReview, ...]]]:
+) -> Iterator[OpenGroup]:
     """Yield groups with those of their answers whose mark a person may still change; none of a question that
     counts for nobody.
 
@@ -189,7 +200,7 @@ def undecided(
             and not _is_made_good(answer, current[sheet_of_student(answer.sheet)])
         )
         if members:
-            yield group, members
+            yield OpenGroup(group, members)
 
 
 def sheet_of_student(graded: Graded) -> SheetOfStudent:

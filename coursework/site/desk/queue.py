@@ -11,7 +11,7 @@ from typing import Any
 
 from starlette.responses import Response
 
-from coursework.database.class_state import ClassState, OpenGroup, UnplacedRow
+from coursework.database.class_state import ClassState, UnplacedRow
 from coursework.database.decisions import decide
 from coursework.database.instructor_queries import (
     decided_since,
@@ -23,7 +23,14 @@ from coursework.errors import BadInput
 from coursework.figures import Figure
 from coursework.gradebook.decisions import WITHDRAWN, Decision
 from coursework.gradebook.graded_sheet import Graded
-from coursework.gradebook.waiting import SHOWN_ON_REQUEST, WHY, AnswerGroup, AnswerToReview, written
+from coursework.gradebook.waiting import (
+    SHOWN_ON_REQUEST,
+    WHY,
+    AnswerGroup,
+    AnswerToReview,
+    OpenGroup,
+    written,
+)
 from coursework.language.numbers import localise, significant
 from coursework.rendering.surface import drawn_figure, has_surface
 from coursework.site.desk.class_cache import class_here, class_page_of
