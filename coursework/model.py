@@ -61,22 +61,20 @@ class GivenSpec:
         return self.low is None and not self.choices
 
     def bounds(self, drawn: Mapping[str, Any]) -> tuple[Any, Any]:
-        """Return the lowest and the highest value for given quantities that are drawn before, numbers or
-        arrays.
+        """Return the lowest and the highest value.
 
         Parameters
         ----------
         drawn
-            Values by name; those that a bound takes are among them.
+            Quantities drawn before it, by name: numbers or arrays.
 
         Returns
         -------
         low, high
-            In the quantity's unit; None for a quantity without a range.
+            In the quantity's unit.
         """
         low, high = (
-            bound(*(drawn[name] for name in _parameters(bound))) if callable(bound) else bound
-            for bound in (self.low, self.high)
+            b(*(drawn[n] for n in _parameters(b))) if callable(b) else b for b in (self.low, self.high)
         )
         return low, high
 

@@ -8,14 +8,12 @@ from functools import lru_cache
 from itertools import pairwise
 from typing import Any, ClassVar
 
-from coursework.errors import WrongValue
 from coursework.kinds.kind import AnswerSpelling, Asking, Kind, Stated
 from coursework.language.words import words
 from coursework.parsing.graph_likeness import Compared, compare, names_that_fit
 from coursework.parsing.graphs import Edge, Graph, graph_of, read_graph, spelled
 from coursework.parsing.reading import Reading
 
-_MOST_LINES = 20
 _RENAMED = 0.5  #: share of the points for the right graph under other names
 
 
@@ -33,17 +31,12 @@ class JointGraphKind(Kind):
     has_symbol = is_called_by_symbol = False
     box = "lines"
     field = "written"
-    room = 3
+    room, most_lines = 3, 20
     family = "graph"
     wrong = "wrong_graph"
     quoted = ("unknown_joint", "one_body", "lone_body")
     faults: ClassVar[dict[str, str]] = {}
     named: ClassVar[bool] = True  #: whether the sheet names the bodies
-
-    def checked_room(self, room: Any) -> Any:
-        if isinstance(room, bool) or not isinstance(room, int) or not 1 <= room <= _MOST_LINES:
-            raise WrongValue(f"its room is a number of lines, 1 to {_MOST_LINES}; found {room!r}")
-        return room
 
     def read(self, answer: Any, part: Stated, asking: Asking) -> Reading:
         return read_graph(answer, graph_of(str(asking.reference(part.quantity))), named=self.named)

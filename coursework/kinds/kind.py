@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Protocol
 
 import numpy as np
 
-from coursework.errors import BadCourse, nearest
+from coursework.errors import BadCourse, WrongValue, nearest
 
 if TYPE_CHECKING:
     from coursework.parsing.reading import Reading
@@ -107,6 +107,7 @@ class Kind(ABC):
     is_open: ClassVar[bool] = False  #: a person marks it, and the solution need not give it
     #: On the sheet, of a part that states none; a part of another kind has no such room.
     room: ClassVar[Any] = None
+    most_lines: ClassVar[int] = 0  #: of its room, where that is a number of lines
     #: On paper that is read back: number (a row of boxes a coordinate), ticks, written, drawing.
     field: ClassVar[str] = "number"
     #: Whether such a row has boxes behind the point, and for a power of ten.
@@ -203,6 +204,9 @@ class Kind(ABC):
 
     def checked_room(self, room: Any) -> Any:
         """Return the room that a part states, or why it is none, as a :class:`WrongValue`."""
+        is_number = isinstance(room, int) and not isinstance(room, bool)
+        if self.most_lines and not (is_number and 1 <= room <= self.most_lines):
+            raise WrongValue(f"its room is a number of lines, 1 to {self.most_lines}; found {room!r}")
         return room
 
     def slips(self, part: Stated, value: Any, reference: Any, numbers: Mapping[str, float]) -> Iterator[str]:

@@ -85,20 +85,8 @@ class ScanQueue:
                 "unit": "",
                 "letters": [],
             }
-        paper = self.papers.papers[card.paper]
-        index = next(
-            k
-            for k, r in enumerate(paper.records)
-            if (r["exercise"], int(r["seed"])) == (card.exercise, card.seed)
-        )
-        variant = self.papers.variant(card.paper, index)
-        part = next(p for p in variant.parts if p.id == card.part)
-        fields = [
-            f
-            for page in self.papers[card.paper]
-            for f in page.fields
-            if (f.place, f.part) == (index, card.part)
-        ]
+        place = card.exercise, card.seed, card.part
+        variant, part = self.joins.part_of(place)
         letters = [part.sort.from_paper([t.case], part, variant) for t in part.sort.ticks(part, variant)]
         return {
             "id": f"{card.exercise}/{card.part}",
@@ -107,7 +95,7 @@ class ScanQueue:
             "exercise": card.exercise,
             "part": card.part,
             "title": _titles(self.papers.course[card.exercise]),
-            "unit": next((f.unit_text for f in fields if f.unit_text), ""),
+            "unit": self.joins.unit_of(place),
             "letters": letters if card.what == "ticks" else [],
         }
 

@@ -89,6 +89,13 @@ def class_now(site: Site, assignment_id: int) -> ClassState:
     return _current_class(site, assignment_id) if left else now
 
 
+def overview(connection: Connection, assignment_id: int) -> AssignmentOverview:
+    """Return what the desk lists of an assignment. Raises HTTPException: there is none."""
+    for about in listed_assignments(connection, assignment_id):
+        return about
+    raise HTTPException("own", 404)
+
+
 def _current_class(site: Site, assignment_id: int) -> ClassState:
     with _lock:
         caches = _class_caches.setdefault(site.store, OrderedDict())
@@ -96,9 +103,7 @@ def _current_class(site: Site, assignment_id: int) -> ClassState:
         caches.move_to_end(assignment_id)
         _forget_others(caches)
     with cached.lock, site.store.reading() as connection:
-        about = next(iter(listed_assignments(connection, assignment_id)), None)
-        if about is None:
-            raise HTTPException("own", 404)
+        about = overview(connection, assignment_id)
         at = stamp(connection, assignment_id)
         now = cached.now
         if (

@@ -21,7 +21,6 @@ from coursework.database.class_summaries import (
 from coursework.database.instructor_queries import (
     AssignmentOverview,
     Stamp,
-    listed_assignments,
     stamp,
     stamps,
 )
@@ -35,9 +34,9 @@ from coursework.gradebook.scale import mark_of
 from coursework.issuing.questions import PaperQuestions
 from coursework.issuing.students import folded
 from coursework.marking.mark import Mark
-from coursework.site.desk.class_cache import class_now, class_within, students_here
+from coursework.site.desk.class_cache import class_now, class_within, overview, students_here
 from coursework.site.desk.question_cards import sign_of
-from coursework.site.frame.requests import HTTPException, Request
+from coursework.site.frame.requests import Request
 from coursework.site.frame.settings import Site
 from coursework.site.papers.submission import pass_dates
 from coursework.system.garbage import paused_collection
@@ -226,9 +225,7 @@ def class_table(site: Site, assignment_id: int) -> ClassTable:
     """
     pass_dates(site, site.clock(), assignment_id)
     with site.store.reading() as connection:
-        about = next(iter(listed_assignments(connection, assignment_id)), None)
-        if about is None:
-            raise HTTPException("own", 404)
+        about = overview(connection, assignment_id)
         at = stamp(connection, assignment_id)
         states = summary_states(connection, site.course, [about], {assignment_id: at})
         stored = stored_tables(connection, states).get(assignment_id)
