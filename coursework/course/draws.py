@@ -285,17 +285,21 @@ class Draws:
             return [{n: stated[n] if n in stated else _constant(s) for n, s in specs} for _ in seeds]
         draws: list[dict[str, float | str] | None] = [None] * len(seeds)
         pending = np.arange(len(seeds))
-        for block in range(MAX_BLOCKS):
-            # A block of candidates for each pending seed; few at a time, so that memory stays flat.
+        first_block, count = 0, 1
+        while first_block < MAX_BLOCKS:
+            # The next blocks of candidates for each pending seed, twice as many each time, since what refuses
+            # the first ones often refuses all; some thousand blocks at a time, so that memory stays flat.
+            blocks = range(first_block, min(first_block + count, MAX_BLOCKS))
+            size = max(1, 4096 // len(blocks))
             still = []
-            for start in range(0, len(pending), 4096):
-                chunk = pending[start : start + 4096]
-                words = np.concatenate([self._block(seeds[i], block, secret) for i in chunk])
+            for start in range(0, len(pending), size):
+                chunk = pending[start : start + size]
+                words = np.concatenate([self._block(seeds[i], b, secret) for i in chunk for b in blocks])
                 drawn = self.candidates(words, stated)
-                good = self.accepted(drawn).reshape(len(chunk), BLOCK)
+                good = self.accepted(drawn).reshape(len(chunk), -1)
                 first = good.argmax(axis=1)
                 hit = good.any(axis=1)
-                rows = np.flatnonzero(hit) * BLOCK + first[hit]
+                rows = np.flatnonzero(hit) * good.shape[1] + first[hit]
                 columns = {n: values[rows].tolist() for n, values in drawn.items()}
                 for position, i in enumerate(chunk[hit]):
                     draws[i] = {n: column[position] for n, column in columns.items()}
@@ -303,6 +307,7 @@ class Draws:
             pending = np.concatenate(still) if still else pending[:0]
             if not len(pending):
                 return draws  # type: ignore[return-value]  # none is left out
+            first_block, count = blocks.stop, 2 * count
         raise self._starved(seeds[pending[0]], secret, stated)
 
     def _starved(self, seed: int, secret: Secret | None, stated: Stated) -> Starved:

@@ -47,10 +47,15 @@ def zoe(class_):
 
 
 @cache
+def text_in(name, lang):
+    return lesson_text(COURSE, name, lang)
+
+
+@cache
 def in_steps(name, lang):
     """A lesson of the site, the text of its steps, and the identifiers of their sections and figures."""
     env = environment_of(COURSE.folder.template_folders, lang)
-    lesson = stepped(env, lesson_text(COURSE, name, lang), lesson_content._address, "/figures")
+    lesson = stepped(env, text_in(name, lang), lesson_content._address, "/figures")
     html = "".join(step.html + step.below for step in lesson.steps)
     return lesson, html, re.findall(r' id="([^"]+)"', html)
 
@@ -59,7 +64,7 @@ def in_steps(name, lang):
 @pytest.mark.parametrize("lang", COURSE.folder.languages)
 def test_a_lesson_in_steps_says_all_that_its_book_page_says_and_leads_somewhere(name, lang):
     """Rendered here rather than by the site, which adds nothing but the frame: the next test."""
-    text = lesson_text(COURSE, name, lang)
+    text = text_in(name, lang)
     env = environment_of(COURSE.folder.template_folders, lang)
     lesson, html, ids = in_steps(name, lang)
     book = LessonPages(env, text, lesson_content._address).html(
@@ -91,7 +96,7 @@ def test_a_lesson_in_steps_says_all_that_its_book_page_says_and_leads_somewhere(
 @every_lesson
 def test_a_step_holds_one_idea(name):
     """A heading begins one, an answer ends one, and what poses an example to complete stays together."""
-    made = list(steps(lesson_text(COURSE, name, "en").pieces))
+    made = list(steps(text_in(name, "en").pieces))
     for step in made:
         kinds = [type(piece) for piece in step]
         heads = [k for k, kind in enumerate(kinds) if kind is HeadPiece]
