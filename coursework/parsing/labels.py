@@ -278,7 +278,7 @@ def is_verbatim(text: str, choices: Mapping[str, Sequence[str]]) -> bool:
 
 
 def _plain(text: str) -> str:
-    return " ".join(text.casefold().replace("’", "'").split()).rstrip(" .")
+    return " ".join(text.casefold().replace("’", "'").split()).rstrip(" .…!")
 
 
 def names_any(text: str, choices: Mapping[str, Sequence[str]]) -> bool:

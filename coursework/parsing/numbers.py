@@ -38,7 +38,7 @@ from coursework.parsing.digits import (
 from coursework.parsing.expressions import plain_expression
 from coursework.parsing.reading import Reading, Stop, bare_value, reading_of, text_of
 from coursework.parsing.scales import is_of_paper, restated
-from coursework.parsing.spelling import shorten
+from coursework.parsing.spelling import in_brackets, shorten
 from coursework.parsing.spoken import number_words, with_signs
 from coursework.parsing.trees import Expression, Operation, bare_angles, numbers_in_degrees, without_idle
 from coursework.parsing.units import Unit, parse_unit, plain_unit
@@ -336,7 +336,8 @@ def read_amounts(text: str, target: Unit, thousands: bool = True, measured: bool
     )
     if _PAIR.fullmatch(text):
         raise Stop("two_values", text)
-    text = _inside(text) or text
+    if within := in_brackets(text):
+        text = without_name(within)
     if not text:
         raise Stop("not_a_number", text)
     if _NOT_FINITE.match(text):
@@ -464,18 +465,6 @@ def _unit_starts(text: str) -> list[int]:
     return starts[-_MAX_PIECES:]
 
 
-def _inside(text: str) -> str:
-    """Return the text between brackets that open at the start and close at the end; else an empty text."""
-    if text[:1] != "(" or text[-1:] != ")":
-        return ""
-    level = 0
-    for at, char in enumerate(text):
-        level += (char == "(") - (char == ")")
-        if level == 0:
-            return text[1:-1].strip() if at == len(text) - 1 else ""
-    return ""
-
-
 _CHECKED = re.compile(r"([^(=≈]*[^\s(=≈+*/^-])\s+(\(.*\))\s*([^()=≈]*)", re.DOTALL)
 _ROUND = str.maketrans("[]{}", "()()")
 _NOUGHT = re.compile(r"\s*[+-]?0+(?:[.,]0*)?\s*")
@@ -488,7 +477,7 @@ def _written_twice(text: str, target: Unit, thousands: bool) -> list[Amount] | N
 
     The number before the brackets is meant, or that behind the equals sign.
     """
-    if (checked := _CHECKED.fullmatch(text.translate(_ROUND))) and (inside := _inside(checked[2])):
+    if (checked := _CHECKED.fullmatch(text.translate(_ROUND))) and (inside := in_brackets(checked[2])):
         unit = checked[3] and f" {checked[3]}"
         if unit and plain_unit(checked[3]) is None:
             return None

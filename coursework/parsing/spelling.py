@@ -36,19 +36,42 @@ _ALIKE = {
     " ": "\t\n\r\v\f\x85\u2028\u2029٬",
     "": "\u200b\u200c\u200d\u2060\ufeff\u00ad",
 }
+_EMPHASISED = re.compile(r"(\*{1,3}|_{1,3}|`+)([^\s*_`](?:.*[^\s*_`])?)\1", re.DOTALL)
+#: A value in bold type before its unit or behind its name; 2**3 is a power.
+_BOLD = re.compile(r"(^|[=:≈]\s*)\*\*([^\s*](?:[^*]*[^\s*])?)\*\*(?=$|[\s.,;])")
 _QUOTES = {'"': '"', "'": "'", "«": "»", "“": "”", "„": "“", "‘": "’"}
 
 
 def unwrapped(text: str) -> str:
     """Return a text without what a program put around it: entities of HTML, quotation marks, the ' of a
-    spreadsheet."""
+    spreadsheet, Markdown's emphasis."""
     text = unescape(text).strip() if "&" in text else text.strip()
+    if text[:1] in ("*", "_", "`") and (emphasised := _EMPHASISED.fullmatch(text)):
+        text = emphasised[2]
+    elif "**" in text:
+        text = _BOLD.sub(r"\1\2", text)
     if text[:1] in _QUOTES:
         if len(text) > 1 and text[-1] == _QUOTES[text[0]]:
             return text[1:-1].strip()
         if text[0] == "'":
             return text[1:].strip()
     return text
+
+
+_CLOSING = {"(": ")", "[": "]", "{": "}"}
+
+
+def in_brackets(text: str) -> str:
+    """Return the text between brackets that open at the start and close at the end; else an empty text."""
+    opening, closing = text[:1], _CLOSING.get(text[:1])
+    if closing is None or text[-1:] != closing:
+        return ""
+    level = 0
+    for at, char in enumerate(text):
+        level += (char == opening) - (char == closing)
+        if level == 0:
+            return text[1:-1].strip() if at == len(text) - 1 else ""
+    return ""
 
 
 _SUPERSCRIPTS = dict(zip("⁰¹²³⁴⁵⁶⁷⁸⁹⁺⁻", "0123456789+-", strict=True))

@@ -4,11 +4,14 @@ root."""
 from __future__ import annotations
 
 import re
+from collections.abc import Sequence
 from functools import lru_cache
 
 from coursework.language.words import languages, words
 from coursework.parsing.labels import folded
 from coursework.parsing.reading import Stop
+from coursework.parsing.spelling import in_brackets, unwrapped
+from coursework.parsing.vocabulary import MAX_LENGTH
 
 _LONGEST = 80  #: characters of a text that answers nothing
 _MARKS = re.compile(r"[\s?!.…/\\_xX×*∅øØ~=#,;:–—−-]+")
@@ -94,7 +97,7 @@ def number_words() -> dict[str, int]:
 #: What people write about a number beside words: an arrow before it, a sign in brackets, digits that go on, a
 #: power of ten in words, a direction up to a turn, to which digit it is rounded, the same in another unit.
 _HABITS = (
-    (re.compile(r"^(?:[→⇒⟹⟶∴]|[=~-]>|~=)\s*(?=[+-]?\s*[0-9])"), ""),
+    (re.compile(r"^~=\s*(?=[+-]?\s*[0-9])"), ""),
     (re.compile(r"^\(\s*([+-])\s*\)\s*(?=[0-9])"), r"\1"),
     (re.compile(r"(?<=[0-9])(?:\.\.\.|…)(?!\s*[0-9+-])"), ""),
     (re.compile(r"(?<=10)\s*(?:exp|puissance|to the power)\s*(?=[+-]?[0-9])", re.I), "^"),
@@ -124,6 +127,30 @@ def _plainly(text: str) -> str:
     return _remark().sub("", text) if re.search(r"[0-9]", text) else text
 
 
+_ARROW = re.compile(r"(?:[→⇒⟹⟶∴]|[=~-]+>)\s*(?=\S)|[•*]\s+(?=\S)")
+
+
+def bare(text: str) -> str:
+    """Return an answer without what people write about one of any kind: brackets around it all, an arrow, a
+    bullet, ``réponse :`` or ``I think it is`` before it, ``(sûr)`` behind it."""
+    if len(text) > MAX_LENGTH:
+        return text
+    text = unwrapped(text).replace("’", "'").rstrip(" .…!")
+    text = _remark().sub("", _without(in_brackets(text) or text, (_ARROW, _before("introduction"))))
+    return unwrapped(text)
+
+
+def _without(text: str, openings: Sequence[re.Pattern[str]]) -> str:
+    """Return a text without the openings before it, in any order."""
+    before = ""
+    while before != text:
+        before = text
+        for opening in openings:
+            if match := opening.match(text):
+                text = text[match.end() :].lstrip(", :")
+    return text
+
+
 def with_signs(text: str) -> str:
     """Return a number with digits and a sign in place of words: ``moins 18,32``, ``cinq``, ``à peu près 15``.
 
@@ -134,11 +161,10 @@ def with_signs(text: str) -> str:
     Stop
         The sign is against the words: ``two_values``.
     """
-    text = _plainly(text)
+    text = _without(_plainly(text), (_ARROW,))
     if not any(map(str.isalpha, text)):
         return text
-    while about := _before("about").match(text):
-        text = text[about.end() :].lstrip(", ")
+    text = _without(text, (_ARROW, _before("introduction"), _before("about")))
     for category, sign in (("minus", "-"), ("plus", "")):
         if match := _before(category).match(text):
             text = sign + text[match.end() :]

@@ -3,6 +3,7 @@ promise."""
 
 import math
 
+import numpy as np
 import pytest
 from sweeps import whole_course
 
@@ -49,6 +50,17 @@ def test_numbers_with_words_signs_and_senses_are_read():
         ("-39,4° [360°]", "deg", -39.4),
         ("39,4° (modulo 360°)", "deg", 39.4),
         ("[360]", "mm", 360),
+        ("[12,5 mm]", "mm", 12.5),
+        ("{1,25 cm}", "mm", 12.5),
+        ("[-3,2] mm", "mm", -3.2),
+        ("[2 + 1]*[3]", "1", 9),
+        ("**12,5 mm**", "mm", 12.5),
+        ("_12.5 mm_", "mm", 12.5),
+        ("`12.5`", "mm", 12.5),
+        ("rA = **12,5** mm.", "mm", 12.5),
+        ("**1,25 * 10**1**", "mm", 12.5),
+        ("2**3**2", "1", 512),
+        ("2 ** 3", "1", 8),
         (" [360°]", "deg", 360),
         ("-3,94 x 10 puissance 1 °", "deg", -39.4),
         ("3,94 10exp1 mm", "mm", 39.4),
@@ -127,6 +139,71 @@ def test_no_answer_in_words_is_none_and_another_place_is_told_as_such():
     assert [t for t in none if not says_nothing(t)] == []
     assert [t for t in ("12", "pivot", "3 ?", "wz", "je trouve 12") if says_nothing(t)] == []
     assert all(map(refers_elsewhere, ("voir feuille", "cf copie", "cf. copie", "see sheet")))
+
+
+#: What leads to an answer, stands about it or behind it, and says nothing of it.
+ABOUT_AN_ANSWER = (
+    "réponse : {}",
+    "Réponse: **{}**",
+    "The answer is {}",
+    "=> {}",
+    "→ {}",
+    "• {}",
+    "c’est {}",
+    "je pense que c'est {}",
+    "I think it is {}",
+    "donc {}",
+    "[{}]",
+    "({})",
+    "{} (sûr)",
+    "{}…",
+    "**{}**",
+    "`{}`",
+)
+
+
+def as_written(variant, part):
+    """The right answer to a part as a text; nothing where no single line says it."""
+    value = variant.key.reference[part.quantity]
+    if part.kind == "choice":
+        return variant.label(part.quantity, value)
+    if isinstance(value, str):
+        return value
+    if isinstance(value, float):
+        return f"{significant(value, 6)} {part.unit if part.unit != '1' else ''}".strip()
+    return "; ".join(significant(x, 6) for x in value) if np.ndim(value) == 1 else str(value)
+
+
+def test_what_stands_about_an_answer_of_any_kind_changes_no_verdict():
+    """A part of each kind of the course, alone on its sheet."""
+    kinds, changed = {}, []
+    for name in COURSE.names:
+        variant = COURSE[name].variant(3, "fr")
+        for part in variant.parts:
+            if not part.sort.is_open and kinds.setdefault(part.kind, name) == name:
+                text = as_written(variant, part)
+                verdict = variant.grade({part.id: text})[part.id].verdict
+                assert verdict not in ("unreadable", "missing"), (name, part.id, text)
+                said = [s.format(text) for s in ABOUT_AN_ANSWER]
+                changed += [s for s in said if variant.grade({part.id: s})[part.id].verdict != verdict]
+    assert len(kinds) > 10
+    assert changed == []
+
+
+def test_what_denies_or_doubts_an_answer_is_none():
+    variant = COURSE["vocabulary"].variant(0, "fr")
+    part = next(p for p in variant.parts if p.kind == "choice")
+    label, other = (variant.label(part.quantity, case) for case in part.choices[:2])
+    for text in (
+        f"je pense que ce n'est pas {label}",
+        f"I don't think it is {label}",
+        f"c'est {label} ou {other}",
+        f"I think {label}?",
+        "I think so",
+        "c'est",
+        "réponse :",
+    ):
+        assert variant.grade({part.id: text})[part.id].verdict in ("unreadable", "missing"), text
 
 
 @whole_course
