@@ -107,13 +107,17 @@ class LessonNumbers:
 
     def example(self, pieces: Sequence[Piece]) -> Iterator[Piece]:
         """Yield the pieces of a worked example; its head has its number, and its first drawing names it."""
-        head = words(self._lang)["lesson"]["example"].format(self._next("example"))
-        named = head.rstrip(".")
+        texts, number = words(self._lang)["lesson"], self._next("example")
+        named = texts["example"].format(number)
+        is_posed = False
         for piece in pieces:
             if named and isinstance(piece, DrawnPiece):
                 piece, named = replace(piece, example=named), ""
-            if head and isinstance(piece, ProsePiece):  # the first one poses the example
-                piece, head = ProsePiece(f"**{head} {piece.text.removeprefix('**')}"), ""
+            if not is_posed and isinstance(piece, ProsePiece):
+                is_posed = True
+                level = next(k for k, head in texts["levels"].items() if piece.text.startswith(f"**{head}"))
+                rest = piece.text.removeprefix(f"**{texts['levels'][level]}")
+                piece = ProsePiece(f"**{texts['numbered_levels'][level].format(number)}{rest}")
             yield piece
 
     def prose(self, text: str) -> Iterator[Piece]:

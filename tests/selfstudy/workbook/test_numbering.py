@@ -52,7 +52,7 @@ def test_what_a_lesson_shows_is_numbered_in_its_order():
         ProsePiece('Another [rod](#index "rod, rigid"), and\n\n$$ x = 2 ,\n y = 3 $$ (3.2)\n\nTwo rods.'),
     ]
     (posed,) = numbers.example([ProsePiece("**Worked example: Pins.** Where?")])
-    assert posed.text == "**Example 3.1. Worked example: Pins.** Where?"
+    assert posed.text == "**Worked example 3.1: Pins.** Where?"
 
 
 def test_every_box_that_the_course_states_finds_its_paragraph(course):
