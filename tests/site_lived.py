@@ -29,6 +29,7 @@ from coursework.site.people import accounts, passwords
 
 STUDENT, OTHER = "David O'Neil", "Émilie Lefèvre"
 EXERCISE = "slotted_mechanism"
+DRAWN = ("coupler_curve", "joint_graph")  #: an exercise for each kind of surface
 
 
 class Lived(Class):
@@ -53,6 +54,7 @@ class Lived(Class):
             mine = account_of(connection, self.ids[STUDENT])
             set_secret(connection, mine.id, passwords.hashed("a password of the demonstration"))
         self.seed = self._practised()
+        self.drawn = [Practising(self, self.browser(STUDENT), name).address for name in DRAWN]
         self.question = self.site.course[EXERCISE].name, "rA"
         row = {"student": OTHER, "answer": "12", "exercise": EXERCISE, "seed": "1", "part": "rA"}
         with self.site.store.begin() as connection:
@@ -93,6 +95,7 @@ def shown(site: Lived) -> list[Shown]:
         ("/lessons/{lesson}", "/lessons/plane_mechanisms"),
         ("/explore/{exercise}", f"/explore/{EXERCISE}"),
         (practice, sheet),
+        *((practice, address) for address in site.drawn),
         (f"{practice}/solution", f"{sheet}/solution"),
         (f"{practice}/motion", f"{sheet}/motion"),
         ("/progress", "/progress"),

@@ -20,7 +20,7 @@ from coursework.markup.markdown import INDEX, anchor
 from coursework.rendering import html, papers, pdf, views
 from coursework.rendering.environment import render
 from coursework.rendering.keeping import keeping
-from coursework.rendering.surface import surface
+from coursework.rendering.surface import kinds_of_surfaces
 from coursework.sheets.book import (
     BlanksPiece,
     Book,
@@ -330,7 +330,7 @@ def _page(env: Environment, book: Book, page: BookPage, names: Mapping[str, Any]
     if isinstance(page.of, BookExercise):
         sheet = page.of.handout
         more = views.context(sheet) | {"one": page.of, "keeping": keeping([sheet], sheet.student, sheet.lang)}
-        more["draws"] = surface(sheet) is not None
+        more["draws"] = kinds_of_surfaces([sheet])
         return render(env, "book/exercise.html.j2", {**names, **more})
     if isinstance(page.of, Paper):
         return _paper(env, page.of, names, "book/paper.html.j2")

@@ -23,7 +23,7 @@ from coursework.markup.mathml import to_mathml
 from coursework.rendering import feedback, views
 from coursework.rendering.environment import environment, render
 from coursework.rendering.keeping import keeping
-from coursework.rendering.surface import surface
+from coursework.rendering.surface import kinds_of_surfaces, scripts_of, surface
 from coursework.sheets.sheet import FeedbackSheet
 
 
@@ -39,7 +39,7 @@ def page(folders: Sequence[Path], sheet: views.Sheet, paper: str = "a4") -> str:
     if sheet is handout:
         names |= {
             "keeping": keeping([handout], handout.student, handout.lang),
-            "draws": surface(handout) is not None,
+            "draws": kinds_of_surfaces([handout]),
         }
     return render(env, views.TEMPLATES[type(sheet)] + ".html.j2", names | {"paper": paper})
 
@@ -67,6 +67,7 @@ def environment_of(folders: tuple[Path, ...], lang: str, goes_dark: bool = True)
         script=partial(_script, env),
         digest=partial(script_digest, env),
         surface=surface,
+        surface_scripts=scripts_of,
         dark_rules=Markup(dark_rules()),
     )
     return env

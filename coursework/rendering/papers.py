@@ -21,7 +21,7 @@ from coursework.language.words import words
 from coursework.rendering import answer_pages, feedback, html, latex, pdf, views
 from coursework.rendering.environment import render
 from coursework.rendering.keeping import keeping
-from coursework.rendering.surface import surface
+from coursework.rendering.surface import kinds_of_surfaces
 from coursework.sheets.paper import FeedbackPaper, Logo, Paper, SolutionPaper
 from coursework.sheets.sheet import AnswerSheet, FeedbackSheet, Handout
 
@@ -231,7 +231,7 @@ def page_names(env: Environment, paper: AnyPaper) -> dict[str, Any]:
 
 def drawing_context(paper: Paper, env: Environment) -> dict[str, Any]:
     """Return the names for the template of a page with drawing surfaces, whose script the page brings."""
-    draws = any(surface(handout) for handout in paper.handouts)
+    draws = kinds_of_surfaces(paper.handouts)
 
     def write(template: str, names: Names) -> str:
         return render(env, template, {**names, "draws": draws})

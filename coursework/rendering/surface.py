@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import cmath
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -90,10 +90,22 @@ class DrawingSurface:
         return in_script(settings)
 
 
-def has_surface(exercise: Exercise, record: Mapping[str, Any]) -> bool:
-    """Return whether sheets of a variant's record have a surface; without the sheet."""
-    is_paper = exercise.drawing_mm or exercise.surface_mm
-    return bool(is_paper) or any(part["kind"] in _GRAPHS for part in record["parts"])
+def kind_of_surface(exercise: Exercise, record: Mapping[str, Any]) -> str | None:
+    """Return the kind of surface that sheets of a variant's record have, if any; without the sheet."""
+    if exercise.drawing_mm or exercise.surface_mm:
+        return "paper"
+    return "graph" if any(part["kind"] in _GRAPHS for part in record["parts"]) else None
+
+
+def kinds_of_surfaces(handouts: Iterable[Handout]) -> tuple[str, ...]:
+    """Return the kinds of surfaces on a page of some sheets, each of which has a script; empty if it has
+    none."""
+    return tuple(sorted({drawn.kind for drawn in map(surface, handouts) if drawn}))
+
+
+def scripts_of(kinds: Iterable[str]) -> tuple[str, ...]:
+    """Return the scripts among the templates that make surfaces work, in their order."""
+    return ("parts/toolbar.js", *(f"parts/surface_{kind}.js" for kind in kinds), "parts/surface.js")
 
 
 def drawn_figure(texts: Mapping[tuple[int, str], str], attempt: int, handout: Handout) -> Figure | None:

@@ -11,11 +11,12 @@ from page_scripts import allowed, digest, runs
 import coursework
 from coursework.language.words import words
 from coursework.rendering import html
-from coursework.rendering.surface import surface
+from coursework.rendering.surface import scripts_of, surface
 from coursework.sheets.handout import handout
 
 COURSE = coursework.open_course()
-SCRIPT = Path(__file__).parents[2] / "templates" / "parts" / "drawing.js"
+TEMPLATES = Path(__file__).parents[2] / "templates"
+KINDS = ("graph", "paper")
 DRAWN = [name for name in COURSE.names if COURSE[name].spec.drawing_mm]
 
 
@@ -24,10 +25,16 @@ def page(name, lang="en", seed=3):
     return sheet, html.page(COURSE.folder.template_folders, sheet)
 
 
-def test_the_script_is_short_and_has_no_words():
-    text = SCRIPT.read_text()
-    assert len(text.encode()) <= 25_600
-    code = re.sub(r"//.*", "", text)
+def script(*kinds):
+    return "".join((TEMPLATES / one).read_text() for one in scripts_of(kinds))
+
+
+def test_a_page_of_one_kind_of_surface_has_a_short_script():
+    assert {kind: len(script(kind).encode()) <= 25_600 for kind in KINDS} == dict.fromkeys(KINDS, True)
+
+
+def test_the_scripts_have_no_words():
+    code = re.sub(r"//.*", "", script(*KINDS))
     spoken = {
         sentence.lower()
         for lang in ("en", "fr")
@@ -47,6 +54,8 @@ def test_a_page_runs_the_script_where_there_is_something_to_draw(name):
     assert allowed(text) == [digest(script) for script in runs(text)]
     assert len(runs(text)) == (1 if surface(sheet) is None else 2)
     assert (surface(sheet) is None) == ("data-surface" not in text)
+    own = {kind for kind in KINDS if f".{kind} = s =>" in text}
+    assert own == set(re.findall(r'data-surface="(\w+)"', text))  # and no script of another kind
 
 
 def test_each_drawn_exercise_offers_its_points_scales_and_links():

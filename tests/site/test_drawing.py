@@ -74,7 +74,7 @@ def test_a_paper_keeps_its_drawings_beside_what_is_handed_in(class_of_three):
     number = dealt(class_of_three, assignment=DRAWN)
     browser, address = class_of_three.browser(ZOE), f"/assignments/{number}"
     page = browser.get(address).text
-    assert "drawing.js" in page
+    assert "drawing_paper.js" in page
     assert re.findall(r'<textarea hidden name="([^"]+)"', page) == ["e2-drawing"]
     texts = {"text.e2-drawing": TEXT, "over.e2-drawing": "0", "text.e2-kl": "1", "over.e2-kl": "0"}
     told = browser.fill(f"{address}/keep", texts).json()

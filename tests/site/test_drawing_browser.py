@@ -195,7 +195,7 @@ def test_all_is_done_by_keys(pencil):
     page = hand.page
     page.focus("[data-tool=point]")
     page.keyboard.press("Enter")
-    page.focus("[data-surface]")
+    page.keyboard.press("Tab")  # the toolbar is one stop
     for key in ("ArrowLeft", "ArrowUp", "Shift+ArrowUp", "Enter"):
         page.keyboard.press(key)
     start = json.loads(hand.text())["items"][0]
@@ -207,6 +207,16 @@ def test_all_is_done_by_keys(pencil):
     page.keyboard.press("2")
     assert page.get_attribute("[data-tool=vector]", "aria-pressed") == "true"
     assert page.inner_text(".surface-told") == "Vector"
+    stood = []
+    for key in ("Shift+Tab", "ArrowLeft", "ArrowLeft", "End", "Home", "ArrowRight", "ArrowRight", "Tab"):
+        page.keyboard.press(key)
+        stood.append(page.evaluate("Object.values({ ...document.activeElement.dataset })[0]"))
+    assert stood == ["vector", "point", "snap", "snap", "point", "vector", "parallel", "paper"]
+    page.keyboard.press("Shift+Tab")
+    assert (
+        page.evaluate("document.activeElement.dataset.tool") == "vector"
+    )  # the chosen, not the last
+    page.keyboard.press("Tab")
     page.keyboard.press(".")
     page.keyboard.press("Enter")
     for _ in range(12):

@@ -52,11 +52,12 @@ def test_joined_files_hold_each_of_theirs_without_comments(class_of_three):
     names = {
         "look.css": ["fonts.css", "sheet.css", "site.css", "dark.css"],
         "answering.js": ["sheet.js", "cells.js", "keys.js", "keeping.js"],
+        "drawing_graph.js": ["toolbar.js", "surface_graph.js", "surface.js"],
     }
     for joined, parts in names.items():
         assert pages.static(joined)[1] == b"\n".join(pages.static(part)[1] for part in parts)
-    assert b"\n//" not in pages.static("drawing.js")[1]
-    assert b"use strict" in pages.static("drawing.js")[1]
+    assert b"\n//" not in pages.static("surface.js")[1]
+    assert b"use strict" in pages.static("surface.js")[1]
     assert pages.static("answering") is None
 
 

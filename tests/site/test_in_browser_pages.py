@@ -27,6 +27,12 @@ def lived(tmp_path_factory):
         yield site, address, browser
 
 
+#: Toolbars in which the keyboard stops more than once, with their stops.
+TOOLBARS = """() => Array.from(document.querySelectorAll("[role=toolbar]"), (bar) =>
+  Array.from(bar.querySelectorAll("*")).filter((one) => one.tabIndex >= 0 && one.checkVisibility()).length
+).filter((stops) => stops > 1)"""
+
+
 def faults(page, address, lang, size):
     """What is wrong with a page, in words."""
     behind = watched(page)
@@ -41,6 +47,7 @@ def faults(page, address, lang, size):
         if page.get_attribute("html", "lang") == lang
         else [page.get_attribute("html", "lang")],
         "low": low(page) if size == "telephone" else [],
+        "toolbars": page.evaluate(TOOLBARS),
         "in print": [one for one in cut_in_print(page) if one] if not address.endswith(REPORT) else [],
         "behind": behind,
     }
@@ -87,11 +94,12 @@ def test_every_page_is_without_fault(lived, lang, size):
     assert looked_at(lived, lang, size, lambda one: one.path not in FAST) == {}
 
 
-#: What the keyboard stands on: nothing, or what is wrong with it.
+#: What the keyboard stands on: nothing, or where it stood already, or what is wrong with it.
 STOP = """() => {
   const one = document.activeElement, box = one.getBoundingClientRect(), wrong = [];
   const look = getComputedStyle(one);
-  if (one === document.body) return null;
+  if (one === document.body || one.walked) return null;
+  one.walked = true;
   const acts = one.matches("a, button, input, select, textarea, summary, [role=application]");
   const scrolls = one.scrollWidth > one.clientWidth || one.scrollHeight > one.clientHeight;
   if (!acts && !scrolls) wrong.push("a stop at nothing");

@@ -106,7 +106,7 @@ def test_a_prepared_page_is_the_page_made_directly_byte_for_byte(served, lang, m
     own = paper_of(served, number, ZOE, lang)
     env = environment_of(served.site.course.folder.template_folders, lang)
     filled = {name: [text, *text.split(", ")] for name, text in texts.items()}
-    files = [{"filled": filled, "draws": True}] * len(EVERY_BOX.exercises)
+    files = [{"filled": filled, "draws": ("graph", "paper")}] * len(EVERY_BOX.exercises)
     bodies = [
         one["body"] for one in papers.context(own.paper, "html.j2", partial(render, env), files)["exercises"]
     ]

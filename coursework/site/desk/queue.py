@@ -32,7 +32,7 @@ from coursework.gradebook.waiting import (
     written,
 )
 from coursework.language.numbers import localise, significant
-from coursework.rendering.surface import drawn_figure, has_surface
+from coursework.rendering.surface import drawn_figure, kind_of_surface
 from coursework.site.desk.class_cache import class_here, class_page_of
 from coursework.site.desk.question_cards import (
     QuestionCard,
@@ -171,7 +171,7 @@ def card_of(request: Request, now: ClassState, item: QueueItem) -> QueueCard:
 
 def _drawing(request: Request, assignment_id: int, graded: Graded, card: QuestionCard) -> Figure | None:
     """Return what the student drew on the surface of a sheet; None without a drawing."""
-    if not has_surface(card.variant.exercise.spec, graded.record):
+    if not kind_of_surface(card.variant.exercise.spec, graded.record):
         return None
     with request.site.store.reading() as connection:
         texts = drawings_of(connection, assignment_id, graded.student)

@@ -13,6 +13,7 @@ from coursework.course.folder import Folder
 from coursework.language.words import words
 from coursework.rendering.environment import render
 from coursework.rendering.html import environment_of
+from coursework.rendering.surface import scripts_of
 
 STATIC = Path(__file__).parents[1] / "static"
 KINDS = {
@@ -29,11 +30,10 @@ _OF_SHEETS = {
     "paper.css": "parts/paper_style.html.j2",
     "motion.js": "motion/motion.js",
     "drawing.css": "parts/surface.css.j2",
-    "drawing.js": "parts/drawing.js",
     "fonts.css": "parts/fonts.css.j2",
     "dark.css": "parts/dark.css.j2",
-    "cells.js": "parts/cells.js",
-    "keys.js": "parts/keys.js",
+    **{f"{name}.js": f"parts/{name}.js" for name in ("cells", "keys", "toolbar")},
+    **{f"surface{kind}.js": f"parts/surface{kind}.js" for kind in ("", "_graph", "_paper")},
 }
 #: Lines of comments, which browsers need not fetch, by content type.
 _COMMENTS = {
@@ -47,6 +47,11 @@ _JOINED = {
     "look.css": ("fonts.css", "sheet.css", "site.css", "dark.css"),
     "basis.js": ("htmx.min.js", "site.js"),
     "answering.js": ("sheet.js", "cells.js", "keys.js", "keeping.js"),
+    "mechanisms.js": ("toolbar.js", "mechanism.js", "mechanism_drawing.js"),
+    **{
+        f"drawing_{'_'.join(kinds)}.js": tuple(Path(script).name for script in scripts_of(kinds))
+        for kinds in (("graph",), ("paper",), ("graph", "paper"))
+    },
 }
 
 

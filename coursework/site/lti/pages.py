@@ -11,7 +11,7 @@ from coursework.language.words import words
 from coursework.rendering import papers
 from coursework.rendering.environment import render
 from coursework.rendering.html import environment_of, script_digest
-from coursework.rendering.surface import surface
+from coursework.rendering.surface import kinds_of_surfaces
 from coursework.sheets.paper import FeedbackPaper, Paper
 from coursework.site.frame.pages import SitePages
 
@@ -56,7 +56,7 @@ class LTIPages(SitePages):
 
     def _page(self, template: str, paper: Paper | FeedbackPaper, form: SheetForm) -> str:
         env = environment_of(self._folder.template_folders, paper.heading.lang)
-        draws = isinstance(paper, Paper) and any(surface(handout) for handout in paper.handouts)
+        draws = kinds_of_surfaces(paper.handouts) if isinstance(paper, Paper) else ()
         files = [{"filled": form.filled, "draws": draws}] * len(papers.sheets_of(paper))
         names = papers.context(paper, "html.j2", partial(render, env), files)
         more = {

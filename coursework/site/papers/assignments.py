@@ -118,7 +118,7 @@ def _paper_response(
         form=form,
         versions=form["data-keep-versions"],
         problem=problem,
-        draws=bool(paper.drawn),
+        draws=paper.draws,
         look="",
         back="",
         zone=zone_name(request.received_at),

@@ -27,7 +27,7 @@ from coursework.model import Part
 from coursework.rendering import papers
 from coursework.rendering.environment import render
 from coursework.rendering.html import environment_of
-from coursework.rendering.surface import has_surface
+from coursework.rendering.surface import kind_of_surface
 from coursework.selfstudy.attempt import read_back as readings
 from coursework.sheets.cells import answer_in, cell_names, form_of, is_incomplete
 from coursework.sheets.paper import FeedbackPaper, Paper, PaperHeading
@@ -154,12 +154,27 @@ class StudentPaper:
         return fields
 
     @cached_property
+    def _surfaces(self) -> Mapping[str, str]:
+        """Kinds of the surfaces to draw on, by exercise."""
+        kinds = (
+            (exercise, kind_of_surface(self.course[exercise].spec, record))
+            for exercise, seed in self.seeds.items()
+            for record in [self.issued.record_of(self.student, exercise, seed)]
+        )
+        return {exercise: kind for exercise, kind in kinds if kind}
+
+    @property
+    def draws(self) -> tuple[str, ...]:
+        """Kinds of the surfaces on the paper."""
+        return tuple(sorted(set(self._surfaces.values())))
+
+    @cached_property
     def drawn(self) -> Mapping[str, str]:
         """Exercises with a surface to draw on, by the name of the box of the drawing."""
         return {
             f"e{index}-{DRAWING}": exercise
-            for index, (exercise, seed) in enumerate(self.seeds.items(), 1)
-            if has_surface(self.course[exercise].spec, self.issued.record_of(self.student, exercise, seed))
+            for index, exercise in enumerate(self.seeds, 1)
+            if exercise in self._surfaces
         }
 
     @cached_property

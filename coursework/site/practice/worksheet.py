@@ -22,7 +22,7 @@ from coursework.marking.answers import read
 from coursework.markup import markdown
 from coursework.rendering import views
 from coursework.rendering.feedback import verdict_word
-from coursework.rendering.surface import has_surface
+from coursework.rendering.surface import kind_of_surface
 from coursework.selfstudy import hints, predictions
 from coursework.selfstudy.attempt import (
     CheckedAnswers,
@@ -158,9 +158,10 @@ class Worksheet:
         return {part.id: part for part in self.variant.parts}
 
     @cached_property
-    def draws(self) -> bool:
-        """True if the sheet has a drawing surface."""
-        return has_surface(self.variant.exercise.spec, self.variant.record)
+    def draws(self) -> tuple[str, ...]:
+        """Kind of the drawing surface of the sheet; empty if it has none."""
+        kind = kind_of_surface(self.variant.exercise.spec, self.variant.record)
+        return (kind,) if kind else ()
 
     @property
     def boxes(self) -> frozenset[str]:

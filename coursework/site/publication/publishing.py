@@ -560,7 +560,7 @@ def _seen(
         form={},
         versions="{}",
         problem="",
-        draws=bool(paper.drawn),
+        draws=paper.draws,
         look=look,
         zone=zone_name(request.received_at),
         back=f"/desk/assignments/{listed.id}",

@@ -341,7 +341,7 @@
       piece("circle", { cx: c.x, cy: y(c), r: marks.includes(n) || n === held ? 8 : 5, fill: marks.includes(n) || n === held ? "#0a58a8" : "#fff", stroke: "#000", "stroke-width": 1.5 });
       piece("text", { x: c.x + 8, y: y(c) - 8, "font-size": 16, fill: "#000" }, n);
     }
-    for (const [name, all] of [["undo", past], ["redo", ahead]]) place.querySelector(`[data-do=${name}]`).disabled = !all.length;
+    for (const [name, all] of [["undo", past], ["redo", ahead]]) place.querySelector(`[data-do=${name}]`).ariaDisabled = !all.length;
     place.querySelectorAll("[data-tool]").forEach((button) => button.setAttribute("aria-pressed", button.dataset.tool === tool));
   }
   const where = (event) => {
