@@ -213,9 +213,7 @@ def test_all_is_done_by_keys(pencil):
         stood.append(page.evaluate("Object.values({ ...document.activeElement.dataset })[0]"))
     assert stood == ["vector", "point", "snap", "snap", "point", "vector", "parallel", "paper"]
     page.keyboard.press("Shift+Tab")
-    assert (
-        page.evaluate("document.activeElement.dataset.tool") == "vector"
-    )  # the chosen, not the last
+    assert page.evaluate("document.activeElement.dataset.tool") == "vector"  # the chosen, not the last
     page.keyboard.press("Tab")
     page.keyboard.press(".")
     page.keyboard.press("Enter")

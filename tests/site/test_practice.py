@@ -15,8 +15,10 @@ from tables import each_row
 from coursework import open_course
 from coursework.database import tables
 from coursework.database.progress import PersonProgress
+from coursework.scenes.animation import told_by_motion
 from coursework.selfstudy.mastery import outings
 
+COURSE = open_course()
 EXERCISE = "slotted_mechanism"
 
 
@@ -269,6 +271,34 @@ def test_the_motion_shows_paths_vectors_and_values_when_all_is_right(class_of_th
     zoe.send({p.id: right_answer(zoe.variant, p) for p in zoe.variant.parts}, check="")
     after = zoe.browser.get(place).text
     assert all(told in after for told in ("data-reading", "data-effect", "data-key", "data-point"))
+
+
+ANIMATED = [name for name in COURSE.names if COURSE[name].is_animated]
+
+
+def offers_motion(html):
+    return '<button name="go" value="motion"' in html
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", ANIMATED)
+def test_a_page_offers_its_motion_or_says_after_which_answers_it_comes(class_of_three, name):
+    zoe = Practising(class_of_three, class_of_three.browser(ZOE), name)
+    told, piece = set(told_by_motion(zoe.variant)), {"HX-Request": "true"}
+    (moves,) = re.findall(r'<div id="moves".*?</div>', zoe.page(), re.DOTALL)
+    named = set(re.findall(rf'href="#below-{BOX}(\w+)"', moves))
+    assert offers_motion(moves) == (not told)
+    assert named == told or (COURSE[name].film is not None and "every question" in moves)
+    if told:
+        assert "data-track" not in zoe.browser.get(f"{zoe.address}/motion", headers=piece).text
+    typed = {BOX + p.id: right_answer(zoe.variant, p) for p in zoe.variant.parts if p.id in told}
+    data = {"versions": "{}", "_seal": zoe.seal, "check": "", **typed}
+    checked = zoe.browser.post(zoe.address, data=data, headers=piece).text
+    assert offers_motion(checked) == bool(told)  # a script puts it in place of what said that it waits
+    assert offers_motion(zoe.page())
+    moving = zoe.browser.get(f"{zoe.address}/motion", headers=piece).text
+    assert "data-track" in moving
+    assert 'id="motion-data"' in moving
 
 
 @pytest.mark.e2e

@@ -18,7 +18,6 @@ from coursework.gradebook.own_drawings import own_drawings
 from coursework.marking.marking import mark
 from coursework.rendering import motion_page, views
 from coursework.rendering.displayed import DisplayedAnimation
-from coursework.scenes.animation import told_by_motion
 from coursework.scenes.gauges import EFFECTS
 from coursework.selfstudy.attempt import CheckedAnswers
 from coursework.selfstudy.mastery import RIGHT
@@ -312,9 +311,8 @@ def motion(request: Request) -> Response:
         "motion_title": work.variant.text.title,
         "is_piece": request.is_fragment,
         "own": BOX_PREFIX,
-        "first_to_answer": [(n, k) for n, k in open_parts.items() if n in told_by_motion(work.variant)],
     }
-    if not names["first_to_answer"]:
+    if not work.motion_waits:
         key = ("motion", work.exercise, work.seed, work.variant.lang, not open_parts)
         names["motion"] = request.site.cache.get(key, lambda: _motion(work.variant, not open_parts))
     return request.render("site/student/practice_motion", **names)

@@ -23,6 +23,7 @@ from coursework.markup import markdown
 from coursework.rendering import views
 from coursework.rendering.feedback import verdict_word
 from coursework.rendering.surface import kind_of_surface
+from coursework.scenes.animation import told_by_motion
 from coursework.selfstudy import hints, predictions
 from coursework.selfstudy.attempt import (
     CheckedAnswers,
@@ -406,6 +407,16 @@ class Worksheet:
             "copied": checked.copied,
         }
 
+    @property
+    def motion_tells(self) -> tuple[str, ...]:
+        """Names of the questions whose answer the motion tells."""
+        return told_by_motion(self.variant)
+
+    @property
+    def motion_waits(self) -> list[tuple[str, int]]:
+        """Names and numbers of those of them without an answer, after which the motion comes."""
+        return [(n, number) for n, number in self.attempt.open_parts.items() if n in self.motion_tells]
+
     def _is_open(self, name: str) -> bool:
         return self.parts[name].sort.is_open
 
@@ -433,7 +444,6 @@ class Worksheet:
             "predicted": self.predictions_to_make(),
             "summary": self.summary(checked, contents),
             "is_shown": self.attempt.is_example,
-            "moves": self.variant.exercise.is_animated,
             "lessons": linked_lessons(self.request.site, self.exercise, self.variant.lang),
             "form": draft_attributes(
                 self.request, f"{self.address}/draft", self.name, self.drafts, BOX_PREFIX, **texts

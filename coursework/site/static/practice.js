@@ -59,10 +59,11 @@
     button.hidden = "answered" in data.dataset;  // otherwise it brings more, once all is answered
   }
   if (motion) {
-    const button = form.querySelector("button[value=motion]");
-    button.addEventListener("click", (event) => {
+    form.addEventListener("click", (event) => {
+      const button = event.target.closest("button[value=motion]");
+      if (!button) return;
       event.preventDefault();
-      event.stopPropagation();
+      event.stopImmediatePropagation();
       button.disabled = true;
       move(button).catch(() => give("tell", { text: said.offline })).finally(() => { button.disabled = false; });
     });
