@@ -316,3 +316,73 @@ class Draughtsman(Pencil):
         """Rate of a bar from the part of a drawn vector across it, anticlockwise positive."""
         across = 1j * cis(self.links[link])
         return ((self.at[end] - self.at[start]) * self.scale / across).real / length
+
+
+class Typist(Draughtsman):
+    """The same without mouse or finger: from one control to the next by Tab and, among the tools, arrow
+    keys."""
+
+    def key(self, name, times=1):
+        for _ in range(times):
+            self.page.keyboard.press(name)
+            self.keys += 1
+
+    def stand(self, selector):
+        """Go to a control by the keys, as far as it is one's turn."""
+        tools = ".surface-tools button"
+        is_tool = self.page.locator(selector).first.evaluate("(n, tools) => n.matches(tools)", tools)
+        goal = tools if is_tool else selector
+        for _ in range(80):
+            if self._stands_on(goal):
+                break
+            before = self.page.locator(goal).first.evaluate(
+                "n => !!(document.activeElement.compareDocumentPosition(n) & 2)"
+            )
+            self.key("Shift+Tab" if before else "Tab")
+        if is_tool:
+            ahead = self.page.locator(selector).first.evaluate(
+                "(n, tools) => { const all = [...document.querySelectorAll(tools)];"
+                " return all.indexOf(n) - all.indexOf(document.activeElement); }",
+                tools,
+            )
+            self.key("ArrowRight" if ahead > 0 else "ArrowLeft", abs(ahead))
+        assert self._stands_on(selector), f"no key leads to {selector}"
+
+    def _stands_on(self, selector):
+        return self.page.evaluate("selector => document.activeElement.matches(selector)", selector)
+
+    def press(self, selector):
+        self.stand(selector)
+        self.key("Enter")
+
+    def enter(self, name, value):
+        self.stand(f"[data-in={name}]")  # what stands there is selected
+        self.keys += len(str(value))
+        self.page.keyboard.type(str(value))
+
+    def cursor(self):
+        """Place of the cursor, as it is read aloud."""
+        x, y = re.search(r"x (-?[\d.,]+)\s+y (-?[\d.,]+)", self.page.inner_text(".surface-told")).groups()
+        return complex(float(x.replace(",", ".")), float(y.replace(",", ".")))
+
+    def tap(self, z):
+        """Go to a point or an intersection by the full stop; where there is none, by the arrow keys."""
+        self.stand("[data-surface]")
+        stops = []
+        while True:
+            self.key(".")
+            is_place = "x " in self.page.inner_text(".surface-told")
+            if not is_place or (stops and abs(self.cursor() - stops[0]) < 1e-6) or len(stops) > 60:
+                break
+            stops.append(self.cursor())
+            if abs(stops[-1] - z) < 0.1:
+                self.key("Enter")
+                return
+        self.key("ArrowRight")
+        way = z - self.cursor()
+        for far, keys in ((way.real, ("ArrowRight", "ArrowLeft")), (way.imag, ("ArrowUp", "ArrowDown"))):
+            self.key(keys[far < 0], round(abs(far)))
+        self.key("Enter")
+
+    def bring(self, z, margin=18):
+        """The cursor brings the paper along."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import base64
 import hashlib
+import re
 from collections.abc import Callable, Sequence
 from functools import lru_cache, partial
 from html import escape
@@ -25,6 +26,9 @@ from coursework.rendering.environment import environment, render
 from coursework.rendering.keeping import keeping
 from coursework.rendering.surface import kinds_of_surfaces, scripts_of, surface
 from coursework.sheets.sheet import FeedbackSheet
+
+#: Lines of a script that are comments, which browsers need not fetch.
+COMMENT_LINES = r"^[ \t]*//.*\n"
 
 
 def page(folders: Sequence[Path], sheet: views.Sheet, paper: str = "a4") -> str:
@@ -74,10 +78,11 @@ def environment_of(folders: tuple[Path, ...], lang: str, goes_dark: bool = True)
 
 
 def _script(env: Environment, *names: str) -> Markup:
-    """Return scripts among the templates, one behind another, as they stand in a page."""
+    """Return scripts among the templates, one behind another, as they stand in a page: without comments."""
     if env.loader is None:
         raise BadCourse(f"no template {names[0]!r}")
-    return Markup("".join("\n" + env.loader.get_source(env, name)[0] for name in names))
+    texts = "".join("\n" + env.loader.get_source(env, name)[0] for name in names)
+    return Markup(re.sub(COMMENT_LINES, "", texts, flags=re.MULTILINE))
 
 
 def script_digest(env: Environment, *names: str) -> str:

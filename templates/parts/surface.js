@@ -142,10 +142,10 @@ on(place, "input", ({ target: t }) => { if (t.dataset.in) own.inputs[t.dataset.i
 // keys, fingers, mouse
 on(svg, "keydown", e => {
   const by = { Left: [-1, 0], Right: [1, 0], Up: [0, 1], Down: [0, -1] }[e.key.slice(5)], d = e.shiftKey ? 0.1 : 1;
-  const c = cursor || centre(), taken = every("[data-tool]")[e.key - 1], stops = [...dots(), ...own.stops()];
+  const c = cursor || centre(), taken = every("[data-tool]")[e.key - 1], turn = { ".": 1, ",": -1 }[e.key];
   keys = true;
   if (by) look({ x: tidy(c.x + by[0] * d), y: tidy(c.y + by[1] * d) });
-  else if (e.key === "." && stops.length) look(stops[(stops.findIndex(one => far(one, c) < 1e-3) + 1) % stops.length]);
+  else if (turn) next_stop(c, turn);
   else if (taken) { taken.click(); tell(taken.title); }
   else if (/^(Enter| )$/.test(e.key)) { const here = (snaps && close(c, 0.02)) || c; press(here); release[s.tool](here, true); }
   else if (e.key === "Escape") choose(s.tool);
@@ -155,6 +155,11 @@ on(svg, "keydown", e => {
   else return;
   e.preventDefault();
 });
+function next_stop(c, turn) {
+  const place_of = (one, all) => all.findIndex(other => far(one, other) < 1e-3);
+  const stops = [...dots(), ...own.stops()].filter((one, k, all) => place_of(one, all) === k);
+  if (stops.length) look(stops.at((place_of(c, stops) + turn) % stops.length));
+}
 function look(c) {
   const there = close(c, 0.02), { x, y } = centre();
   cursor = xy(c);

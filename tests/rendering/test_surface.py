@@ -25,16 +25,8 @@ def page(name, lang="en", seed=3):
     return sheet, html.page(COURSE.folder.template_folders, sheet)
 
 
-def script(*kinds):
-    return "".join((TEMPLATES / one).read_text() for one in scripts_of(kinds))
-
-
-def test_a_page_of_one_kind_of_surface_has_a_short_script():
-    assert {kind: len(script(kind).encode()) <= 25_600 for kind in KINDS} == dict.fromkeys(KINDS, True)
-
-
 def test_the_scripts_have_no_words():
-    code = re.sub(r"//.*", "", script(*KINDS))
+    code = "".join(re.sub(r"//.*", "", (TEMPLATES / one).read_text()) for one in scripts_of(KINDS))
     spoken = {
         sentence.lower()
         for lang in ("en", "fr")
@@ -52,7 +44,10 @@ def test_the_scripts_have_no_words():
 def test_a_page_runs_the_script_where_there_is_something_to_draw(name):
     sheet, text = page(name)
     assert allowed(text) == [digest(script) for script in runs(text)]
-    assert len(runs(text)) == (1 if surface(sheet) is None else 2)
+    _, *drawing = runs(text)
+    assert len(drawing) == (surface(sheet) is not None)
+    assert len("".join(drawing).encode()) <= 25_600
+    assert "\n//" not in "".join(runs(text))
     assert (surface(sheet) is None) == ("data-surface" not in text)
     own = {kind for kind in KINDS if f".{kind} = s =>" in text}
     assert own == set(re.findall(r'data-surface="(\w+)"', text))  # and no script of another kind

@@ -6,10 +6,11 @@ import json
 import math
 from dataclasses import replace
 
+import constructions
 import pytest
 from site_assignments import ASSIGNMENT, dealt
 from site_browser import WIDTHS, context_of, desk_at, low, serious, told, too_wide, watched
-from site_pencil import Draughtsman
+from site_pencil import Draughtsman, Typist
 from site_people import MAX, ZOE
 from site_practising import right_answer
 from site_server import until
@@ -228,6 +229,23 @@ def test_all_is_done_by_keys(pencil):
     page.keyboard.press("Control+z")
     assert [one["k"] for one in json.loads(hand.text())["items"]] == ["point"]
     hand.close()
+
+
+def test_a_polygon_is_drawn_and_handed_in_by_keys_alone(desk):
+    for size, lang in PLACES:
+        hand = Typist(desk, "velocity_polygon", size, lang)
+        values = constructions.velocity_polygon(hand)
+        assert hand.keys < 200
+        for part, value in values.items():
+            hand.stand(f"[name=a-{part}]")
+            hand.page.keyboard.type(f"{value:.5g}")
+        hand.press(".practice-bar button[name=check]")
+        hand.page.wait_for_selector("#summary .points")
+        assert hand.page.evaluate("document.activeElement.id") == "summary"
+        drawn = [part.id for part in hand.variant.parts if not part.choices]
+        right = [part for part in drawn if hand.page.locator(f"#told-a-{part} .right").count()]
+        assert right == drawn
+        hand.close()
 
 
 @pytest.mark.parametrize("exercise", ["velocity_polygon", "joint_graph"])

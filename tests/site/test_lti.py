@@ -392,7 +392,7 @@ def test_a_folder_for_another_address_is_refused(tmp_path):
 def test_a_paper_in_a_frame_has_a_surface_whose_drawing_is_kept_with_what_is_handed_in(linked):
     visitor, page, path = linked.enter(custom={"exercise": "two_circles", "tries": "2"})
     assert "data-surface" in page.text
-    assert re.findall(r'<script src="/static/([a-z]+)\.js', page.text) == ["cells", "drawing"]
+    assert re.findall(r'<script src="/static/([a-z_]+)\.js', page.text) == ["cells", "drawing_paper"]
     assert "script-src 'self'" in page.headers["content-security-policy"]
     assert "script-src 'self'" in html.unescape(page.text)
     drawing_ = '{"v": 1, "items": [{"k": "point", "id": 1, "x": 12.5, "y": 30, "n": "p"}], "scale": null}'

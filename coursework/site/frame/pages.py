@@ -12,7 +12,7 @@ from typing import Any
 from coursework.course.folder import Folder
 from coursework.language.words import words
 from coursework.rendering.environment import render
-from coursework.rendering.html import environment_of
+from coursework.rendering.html import COMMENT_LINES, environment_of
 from coursework.rendering.surface import scripts_of
 
 STATIC = Path(__file__).parents[1] / "static"
@@ -37,7 +37,7 @@ _OF_SHEETS = {
 }
 #: Lines of comments, which browsers need not fetch, by content type.
 _COMMENTS = {
-    KINDS[".js"]: re.compile(rb"^[ \t]*//.*\n", re.MULTILINE),
+    KINDS[".js"]: re.compile(COMMENT_LINES.encode(), re.MULTILINE),
     KINDS[".css"]: re.compile(rb"^[ \t]*/\*[^*]*\*/\n", re.MULTILINE),
 }
 _NONE = re.compile(rb"(?!)")
