@@ -27,8 +27,8 @@ from coursework.rendering.keeping import keeping
 from coursework.rendering.surface import kinds_of_surfaces, scripts_of, surface
 from coursework.sheets.sheet import FeedbackSheet
 
-#: Lines of a script that are comments, which browsers need not fetch.
-COMMENT_LINES = r"^[ \t]*//.*\n"
+#: Lines of a script that are comments, and the indentation of others, which browsers need not fetch.
+NOT_FETCHED = r"^[ \t]*(?://.*\n)?"
 
 
 def page(folders: Sequence[Path], sheet: views.Sheet, paper: str = "a4") -> str:
@@ -78,11 +78,11 @@ def environment_of(folders: tuple[Path, ...], lang: str, goes_dark: bool = True)
 
 
 def _script(env: Environment, *names: str) -> Markup:
-    """Return scripts among the templates, one behind another, as they stand in a page: without comments."""
+    """Return scripts among the templates, one behind another, without what browsers need not fetch."""
     if env.loader is None:
         raise BadCourse(f"no template {names[0]!r}")
     texts = "".join("\n" + env.loader.get_source(env, name)[0] for name in names)
-    return Markup(re.sub(COMMENT_LINES, "", texts, flags=re.MULTILINE))
+    return Markup(re.sub(NOT_FETCHED, "", texts, flags=re.MULTILINE))
 
 
 def script_digest(env: Environment, *names: str) -> str:

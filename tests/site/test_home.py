@@ -1,10 +1,16 @@
 """The first page, the language, the shared files, and who may send a form."""
 
+import re
+from pathlib import Path
+
 import pytest
 from site_people import TEACHER, ZOE, Class
 from tables import each_row
 
+from coursework.site.frame.pages import STATIC
 from coursework.site.frame.settings import Entrance
+
+TEMPLATES = Path(__file__).parents[2] / "templates"
 
 
 @pytest.mark.parametrize(("name", "goes"), [(None, "/sign-in"), (ZOE, "/practice"), (TEACHER, "/desk")])
@@ -56,9 +62,17 @@ def test_joined_files_hold_each_of_theirs_without_comments(class_of_three):
     }
     for joined, parts in names.items():
         assert pages.static(joined)[1] == b"\n".join(pages.static(part)[1] for part in parts)
-    assert b"\n//" not in pages.static("surface.js")[1]
-    assert b"use strict" in pages.static("surface.js")[1]
+    surface = pages.static("surface.js")[1]
+    assert not re.search(rb"^(//|[ \t])", surface, re.MULTILINE)
+    assert b"use strict" in surface
     assert pages.static("answering") is None
+
+
+def test_no_text_in_a_script_is_broken_over_lines():
+    """They are sent without indentation, which would be missing in it."""
+    scripts = [one for folder in (STATIC, TEMPLATES) for one in folder.rglob("*.js")]
+    lines = [(one.name, line) for one in scripts for line in one.read_text().splitlines()]
+    assert [(name, line) for name, line in lines if line.count("`") % 2] == []
 
 
 def test_who_one_is_is_chosen_in_a_demonstration_alone(class_of_three):

@@ -12,7 +12,7 @@ from typing import Any
 from coursework.course.folder import Folder
 from coursework.language.words import words
 from coursework.rendering.environment import render
-from coursework.rendering.html import COMMENT_LINES, environment_of
+from coursework.rendering.html import NOT_FETCHED, environment_of
 from coursework.rendering.surface import scripts_of
 
 STATIC = Path(__file__).parents[1] / "static"
@@ -35,10 +35,10 @@ _OF_SHEETS = {
     **{f"{name}.js": f"parts/{name}.js" for name in ("cells", "keys", "toolbar")},
     **{f"surface{kind}.js": f"parts/surface{kind}.js" for kind in ("", "_graph", "_paper")},
 }
-#: Lines of comments, which browsers need not fetch, by content type.
-_COMMENTS = {
-    KINDS[".js"]: re.compile(COMMENT_LINES.encode(), re.MULTILINE),
-    KINDS[".css"]: re.compile(rb"^[ \t]*/\*[^*]*\*/\n", re.MULTILINE),
+#: Lines of comments, and indentation, which browsers need not fetch, by content type.
+_NOT_FETCHED = {
+    KINDS[".js"]: re.compile(NOT_FETCHED.encode(), re.MULTILINE),
+    KINDS[".css"]: re.compile(rb"^[ \t]*(?:/\*[^*]*\*/\n)?", re.MULTILINE),
 }
 _NONE = re.compile(rb"(?!)")
 
@@ -80,14 +80,14 @@ class SitePages:
         return render(environment_of(self._folder.template_folders, lang), f"{template}.html.j2", names)
 
     def static(self, name: str) -> tuple[str, bytes] | None:
-        """Return the content type and the bytes of a shared static file, without its comments; None if there
-        is no such file."""
+        """Return the content type and the bytes of a shared static file, without its comments and
+        indentation; None if there is no such file."""
         kind = KINDS.get(Path(name).suffix, "")
         if name in _JOINED:
             pieces = filter(None, map(self.static, _JOINED[name]))
             return kind, b"\n".join(content for _, content in pieces)
         content = self._content(name)
-        return None if content is None else (kind, _COMMENTS.get(kind, _NONE).sub(b"", content))
+        return None if content is None else (kind, _NOT_FETCHED.get(kind, _NONE).sub(b"", content))
 
     def _content(self, name: str) -> bytes | None:
         if name in _OF_SHEETS:
