@@ -1,11 +1,21 @@
 // Joint graphs on a surface: bodies, and joints between two or more of them.
 (window.surfaces ||= {}).graph = s => {
 "use strict";
-const { data, said, line, ring, write, beyond, along, near, find, of, put, hit, pick, make, tell, show, box, send, entry, keep } = s;
+const { data, said, line, ring, write, beyond, along, far, near, find, of, put, hit, pick, make, tell, show, box, send, entry, keep } = s;
 let joined = 0;
 const kind = t => (data.kinds[t] || [""])[0];
-const middle = one => one.of.map(find).reduce((c, b, k) => along(c, b, 1 / (k + 1)));
-const called = one => (one.k === "body" ? `${one.n} ${s.where(one)}` : `${one.of.map(id => find(id).n).join("–")} ${kind(one.t)}`.trim());
+// Places of the names of joints: in the middle, or where lines cross there beside it.
+function places() {
+  const taken = [];
+  for (const one of of("joint")) {
+    const [p, q, ...more] = one.of.map(find), middle = [p, q, ...more].reduce((c, b, k) => along(c, b, 1 / (k + 1)));
+    const beside = more.length ? [] : [0.35, 0.65, 0.25, 0.75].map(k => along(p, q, k));
+    const free = [middle, ...beside].find(c => !near(c, [...taken, ...of("body")], 7));
+    taken.push({ ...free || middle, one });
+  }
+  return taken;
+}
+const called = one => (one.k === "body" ? one.n : `${one.of.map(id => find(id).n).join("–")} ${kind(one.t)}`.trim());
 function join(t) {
   if (s.marks.length < 2) { tell(said.two_bodies); return; }
   const bodies = s.marks;
@@ -20,9 +30,12 @@ function take() {
   const drawn = of("joint").map(one => ({ of: one.of.map(id => find(id).n), t: one.t }));
   if (joints.some(one => !one || one.t === undefined) || JSON.stringify(joints) === JSON.stringify(drawn)) return;
   s.items = of("body");
-  [...new Set(joints.flatMap(one => one.of))].forEach((n, k, all) => {
-    const c = beyond({ x: 0.5, y: 0.5 }, 90 - 360 * k / all.length, 0.38);
-    if (!s.items.some(one => one.n === n)) put({ k: "body", x: wide * c.x, y: high * c.y, n });
+  const names = [...new Set(joints.flatMap(one => one.of))], isNew = !s.items.length;
+  const around = share => { const c = beyond({ x: 0.5, y: 0.5 }, 90 - 360 * share, 0.38); return { x: wide * c.x, y: high * c.y }; };
+  const ways = [...Array(24).keys()].map(k => around(k / 24)), room = c => Math.min(...s.items.map(one => far(one, c)));
+  names.forEach((n, k) => {  // one more body where the others leave most room
+    const c = isNew ? around(k / names.length) : ways.reduce((best, one) => (room(one) > room(best) ? one : best));
+    if (!s.items.some(one => one.n === n)) put({ k: "body", ...c, n });
   });
   for (const one of joints) put({ k: "joint", of: one.of.map(n => of("body").find(b => b.n === n).id), t: one.t });
   joined = joints.length;
@@ -31,7 +44,7 @@ return {
   edge: 2, boxes: [data.box], called, take,
   step: () => 2,
   reach: () => 6,
-  hit: c => (near(c, of("joint").map(one => ({ ...middle(one), one })), 7) || {}).one,
+  hit: c => (near(c, places(), 7) || {}).one,
   fill() {
     const joints = of("joint").map(one => called(one).replace(/–/g, "-"));
     if (joints.length || joined) send(box(data.box), joints.join(", "));
@@ -59,7 +72,7 @@ return {
   },
   shapes: {
     body: (one, look) => [ring(one, 5, `${look} vertex`), write([[one.n]], { x: one.x, y: one.y - 1.7 }, 5, "mid")],
-    joint(one, look) { const c = middle(one); return [...one.of.map(id => line(c, find(id), look)), write([[kind(one.t).slice(0, 3)]], { x: c.x, y: c.y + 1 }, 4, "mid")]; },
+    joint(one, look) { const c = places().find(each => each.one === one); return [...one.of.map(id => line(c, find(id), look)), write([[kind(one.t).slice(0, 3)]], { x: c.x, y: c.y + 1 }, 4, "mid")]; },
   },
   shown(item) {
     entry("body").closest("label").hidden = !item || item.k !== "body";

@@ -301,6 +301,22 @@ def test_names_in_a_drawing_do_not_lie_on_each_other_on_the_narrowest_screen(des
     assert wrong == {}
 
 
+#: Typed one joint after the other.
+NINE_BODIES = "1-3-7 R, 1-5 R, 2-6 R, 2-7 P, 2-9 R, 4-6 R, 4-9 R, 5-6 R, 5-8 R, 8-9 R".split(", ")
+
+
+def test_names_in_a_joint_graph_do_not_lie_on_each_other(pencil):
+    hand, found = pencil("joint_graph"), {}
+    for answer in (
+        "1-4 R, 2-5 R, 3-6 P",
+        *(", ".join(NINE_BODIES[:count]) for count in range(1, len(NINE_BODIES) + 1)),
+    ):
+        hand.page.fill("[name=a-graph]", answer)
+        assert hand.page.locator("[id$=drawing-ink] > g:nth-child(2) text.mid").count() > 3
+        found[answer] = hand.page.evaluate(OVERLAPPING)
+    assert not any(found.values()), found
+
+
 def test_a_paper_has_a_surface_for_each_exercise_that_is_drawn(desk):
     class_, address, browser = desk
     exercises = tuple(map(AskedExercise, ("velocity_polygon", "grashof", "joint_graph")))
