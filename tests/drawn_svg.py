@@ -7,6 +7,8 @@ import re
 import xml.etree.ElementTree as ET
 from itertools import pairwise
 
+import numpy as np
+
 SVG = "{http://www.w3.org/2000/svg}"
 
 
@@ -81,19 +83,18 @@ def white_to_lines(figure):
         for box in figure.labels():
             middle, side = complex(box.x, box.y) + complex(box.width, box.height) / 2, (box.width, box.height)
             corners = [middle + complex(side[0] * x, side[1] * y) / 2 for x in (-1, 1) for y in (-1, 1)]
-            for a, b in pairwise(points):
-                away = [
-                    abs(z.real - middle.real) - side[0] / 2 + 1j * (abs(z.imag - middle.imag) - side[1] / 2)
-                    for z in (a, b)
-                ]
-                found += [math.hypot(max(z.real, 0), max(z.imag, 0)) - half for z in away]
-                found += [abs(z - a - _part(z - a, b - a) * (b - a)) - half for z in corners]
+            ends = np.array(points)
+            away = abs(ends.real - middle.real) - side[0] / 2, abs(ends.imag - middle.imag) - side[1] / 2
+            found += [np.hypot(*np.maximum(away, 0)).min() - half]
+            found += [_distances(corner, ends).min() - half for corner in corners]
     return min(found)
 
 
-def _part(z, way):
-    """How far along a way what is nearest to z lies, from 0 to 1."""
-    return min(1, max(0, (z * way.conjugate()).real / (abs(way) ** 2 or 1)))
+def _distances(point, ends):
+    """The distances of a point from the segments between the points of a line, which are arrays."""
+    ways = np.diff(ends)
+    part = ((point - ends[:-1]) * ways.conj()).real / np.maximum(abs(ways) ** 2, 1e-300)
+    return abs(point - ends[:-1] - np.clip(part, 0, 1) * ways)
 
 
 def white_between_labels(figure):
