@@ -315,6 +315,7 @@ def test_names_in_a_joint_graph_do_not_lie_on_each_other(pencil):
         assert hand.page.locator("[id$=drawing-ink] > g:nth-child(2) text.mid").count() > 3
         found[answer] = hand.page.evaluate(OVERLAPPING)
     assert not any(found.values()), found
+    hand.close()
 
 
 def test_a_paper_has_a_surface_for_each_exercise_that_is_drawn(desk):
