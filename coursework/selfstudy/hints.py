@@ -156,9 +156,9 @@ def _against(variant: Variant, part: Part) -> str:
 
 
 def _look_again(variant: Variant, part: Part) -> str:
-    """Return the hint of last resort: to look at the cases, or at the statement."""
+    """Return the hint of last resort: to look at the cases, or at the statement for what its kind asks."""
     texts = words(variant.lang)["study"]["hint"]
-    return texts["cases"] if part.choices else texts["statement"]
+    return texts["cases"] if part.choices else texts["kinds"].get(part.kind, texts["statement"])
 
 
 def _is_free(variant: Variant, section: str) -> bool:
