@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from coursework.course.variant import Variant
 
 
-ECHO = 60  #: characters of an answer quoted back
+ECHO = 160  #: characters of what was read, told back: a graph of ten joints, a loop equation
 QUOTED = 40  #: characters of one that could not be read
 
 

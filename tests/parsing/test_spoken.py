@@ -10,6 +10,8 @@ from sweeps import whole_course
 import coursework
 from coursework.issuing.issuing import distinct_variants
 from coursework.language.numbers import significant
+from coursework.marking.answers import read
+from coursework.marking.feedback import echo
 from coursework.parsing.numbers import read_integer, read_number
 from coursework.parsing.spoken import refers_elsewhere, says_nothing
 
@@ -188,6 +190,20 @@ def test_what_stands_about_an_answer_of_any_kind_changes_no_verdict():
                 changed += [s for s in said if variant.grade({part.id: s})[part.id].verdict != verdict]
     assert len(kinds) > 10
     assert changed == []
+
+
+def test_what_is_read_is_told_back_whole_in_every_exercise():
+    cut = []
+    for name in COURSE.names:
+        variant = COURSE[name].variant(3, "fr")
+        for part in variant.parts:
+            value = variant.key.reference[part.quantity]
+            if not part.sort.is_open and not isinstance(value, (int, float)):
+                answer = value if isinstance(value, str) else value.tolist()
+                (read_as, *_) = read(variant, part, answer).read_as
+                if "…" in echo(read_as, "fr"):
+                    cut.append((name, part.id, read_as))
+    assert cut == []
 
 
 def test_what_denies_or_doubts_an_answer_is_none():
