@@ -37,10 +37,7 @@ STRUCK = "…"  #: replaces a name
 #: Characters of what is struck out of the texts of others: a shorter word says of nobody who it is.
 _SHORTEST = 3
 #: What an assignment says, where a name of letters alone is more likely another word.
-_HEADS = (
-    "stated",
-    "asked",
-)
+_HEADS = ("stated", "asked")
 
 #: Texts that may name a person; answers of others are not among them.
 TELLING: tuple[tuple[Table, tuple[str, ...]], ...] = (

@@ -29,17 +29,9 @@ _SCALE = 1.0  #: at most
 _WIDE = 110.0  #: what the points may take of the paper across, mm
 _ARM = 6.0  #: of an axis to each side of its point, mm on paper
 #: The base, and where it stands from the middle of the left side, mm on paper.
-_BASE, _CORNER = (
-    9.0,
-    complex(-20, -4),
-)
+_BASE, _CORNER = (9.0, complex(-20, -4))
 #: Half-length and radius of a tube, radius of a ball, half the side of a plate, mm on paper.
-_LONG, _RADIUS, _BALL, _PLATE = (
-    3.0,
-    1.5,
-    1.9,
-    3.2,
-)
+_LONG, _RADIUS, _BALL, _PLATE = (3.0, 1.5, 1.9, 3.2)
 _ASIDE = 5.5  #: from a point to the symbol of one of several joints there, along its axis, mm on paper
 _FEW, _SMALLER = 2, 0.75  #: more joints than a few have smaller symbols
 _UNITS = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
@@ -320,12 +312,7 @@ _DRAWN: dict[str, tuple[Shape, float]] = {
     "point_contact": (_on_plate, 2 * _BALL),
 }
 #: Those whose symbol may stand anywhere on the axis.
-_ALONG = (
-    "revolute",
-    "cylindrical",
-    "helical",
-    "prismatic",
-)
+_ALONG = ("revolute", "cylindrical", "helical", "prismatic")
 
 
 def _unit(vector: Place) -> Place:

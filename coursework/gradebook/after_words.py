@@ -6,6 +6,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from typing import Any, NamedTuple
 
+from coursework.errors import first_few
 from coursework.gradebook.adjustments import PRICE
 from coursework.gradebook.after import Distribution, Exam, ExamQuestion
 from coursework.gradebook.decisions import WITHDRAWN, Decision
@@ -83,9 +84,8 @@ def _place(exam: Exam, steps: Sequence[Decision], lang: str) -> str:
         if (one.exercise, one.part) in exam.questions
     ]
     if numbers:
-        more = [] if len(numbers) <= _NUMBERS else [f"… ({len(numbers)})"]
         name = "question" if len(numbers) == 1 else "questions"
-        return str(texts[name]).format(", ".join([*numbers[:_NUMBERS], *more]))
+        return str(texts[name]).format(first_few(numbers, _NUMBERS, with_count=True))
     number = exam.questions.exercise_number(step.exercise)
     return str(texts["exercise"]).format(number) if number else str(step.exercise or texts["everywhere"])
 

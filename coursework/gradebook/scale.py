@@ -11,10 +11,7 @@ from typing import Any
 from coursework.issuing.issued import Issued
 
 #: Where an assignment states none and one is needed.
-USUAL_SCALE: Mapping[str, Any] = {
-    "of": 20.0,
-    "step": 0.5,
-}
+USUAL_SCALE: Mapping[str, Any] = {"of": 20.0, "step": 0.5}
 
 
 def mark_of(issued: Issued, points: float, out_of: float) -> str:

@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from coursework.course.course import Course
+from coursework.course.variant import Variant
 from coursework.issuing.issued import NOT_ASKED, items_of_papers
 from coursework.issuing.questions import PaperQuestions, Question
 from coursework.issuing.students import folded
@@ -30,7 +31,7 @@ def wide_form(
     if codes:
         papers.sort(key=lambda items: (codes.get(items[0]["student"], ""), items[0].get("sitting", 1)))
         identity = ()
-    asking: dict[Question, Mapping[str, Any]] = {}  #: a record of each question
+    asking: dict[Question, Variant] = {}  #: a variant with each question
     rows: list[dict[str, Any]] = []
     asked: list[set[Question]] = []
     for items in papers:
@@ -43,22 +44,20 @@ def wide_form(
             rows[-1][f"{record['exercise']} seed"] = record["seed"]
             on_paper = {(str(record["exercise"]), str(part["id"])) for part in record["parts"]}
             asked[-1] |= on_paper
-            asking |= dict.fromkeys(on_paper - asking.keys(), record)
+            if new := on_paper - asking.keys():
+                asking |= dict.fromkeys(new, course[record["exercise"]].from_record(record))
     columns = ["student", *identity, *(["version"] if any(row["version"] for row in rows) else [])]
     needs_seeds = any(not items[0].get("student") or items[0].get("sitting", 1) > 1 for items in papers)
     for question in (question for question in questions if question in asking):
         if needs_seeds and (seed := f"{question[0]} seed") not in columns:
             columns.append(seed)
-        columns.append(
-            f"{questions[question]} {' '.join(question)}{_unit(course, question, asking[question])}"
-        )
+        columns.append(f"{questions[question]} {' '.join(question)}{_unit(question, asking[question])}")
         for row, on_paper in zip(rows, asked, strict=True):
             row[columns[-1]] = "" if question in on_paper else NOT_ASKED
     return columns, [{column: row.get(column, "") for column in columns} for row in rows]
 
 
-def _unit(course: Course[Any], question: Question, record: Mapping[str, Any]) -> str:
-    variant = course[question[0]].from_record(record)
+def _unit(question: Question, variant: Variant) -> str:
     part = next(part for part in variant.parts if part.id == question[1])
     unit = units_text(part, variant.lang, variant)
     return f" ({unit})" if unit else ""

@@ -165,7 +165,7 @@ def _evaluated(maxima: str, answers: Mapping[int, float]) -> float | None:
     }
     text = maxima.replace("%pi", "PI").replace("%i", "I").replace("^", "**")
     try:
-        # Of our own print.
+        # The formula is one that this package printed.
         value = complex(eval(compile(text, "<formula>", "eval"), {"__builtins__": {}}, space))
     except (ArithmeticError, ValueError):
         return None

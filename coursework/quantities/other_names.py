@@ -44,11 +44,8 @@ class OtherNames:
     def _space(self, function: FunctionType) -> dict[str, Any]:
         names, package = function.__globals__, package_of(function)
         if id(names) not in self._spaces:
-            # Which is held: no identity is used twice.
-            space = self._spaces[id(names)] = {
-                **names,
-                PLAIN: names,
-            }
+            # The names are held, so that no identity is used twice.
+            space = self._spaces[id(names)] = {**names, PLAIN: names}
             space |= {name: self.value(name, value, package) for name, value in names.items()}
         return self._spaces[id(names)]
 

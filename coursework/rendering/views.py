@@ -459,11 +459,7 @@ def offered(question: Question) -> tuple[tuple[str, str], ...]:
 
 
 #: Width of all choices; of a box and its letter; between columns.
-_CHOICES_MM, _BOX_MM, _BETWEEN_MM = (
-    146.0,
-    11.0,
-    4.0,
-)
+_CHOICES_MM, _BOX_MM, _BETWEEN_MM = (146.0, 11.0, 4.0)
 
 
 def columns(question: Question, lang: str) -> int:

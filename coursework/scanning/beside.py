@@ -20,12 +20,8 @@ _LABEL, _NONE = 7.0, 19.0  #: mm behind a box to tick, which a letter takes, and
 _WIDE, _SIGN = 2.8, 1.8  #: mm, letters of a unit: m and w, and the others
 _NARROW = 2.5  #: mm, a place where nobody writes
 _BELOW = {"drawing": 10.0}  #: mm below a field within which something is printed, or two
-#: Mm, the least and the greatest height of writing, and its greatest length.
-_SMALL, _TALL, _LONG = (
-    1.8,
-    15.0,
-    60.0,
-)
+#: Least and greatest height of writing, and its greatest length, mm.
+_SMALL, _TALL, _LONG = (1.8, 15.0, 60.0)
 _MARK = 6.0  #: mm from the middle of a black square to where paper is white
 _WRITING = 1.5  #: mm2 of it, less than a digit has
 

@@ -45,10 +45,7 @@ _THIN, _LEAN = 0.15, 16.0  #: of a fraction's bar: its breadth to its length, an
 _LIKE_EDGES = (1, 7)  #: digits for which the edge of a stain may be taken
 _CELL = (90, 70)  #: pixels of a box that is handed to the reader
 #: Least probability of a digit, and number of texts, that a doubted number may be.
-_POSSIBLE, _CANDIDATES = (
-    0.01,
-    24,
-)
+_POSSIBLE, _CANDIDATES = (0.01, 24)
 
 
 @dataclass(frozen=True)

@@ -17,11 +17,8 @@ import numpy as np
 from coursework.scanning.pictures import opencv
 from coursework.sheets.answer_pages import AnswerField, AnswerPage, Box
 
-#: Mm to the sides, up and down, that a group is looked for: less than half the pitch of boxes.
-_REACH = (
-    3.2,
-    5.2,
-)
+#: How far a group is looked for to the sides, up and down, mm: less than half the pitch of boxes.
+_REACH = (3.2, 5.2)
 _NEAR = (1.6, 1.6)  #: mm, around where the groups beside it say that it lies
 _OFF = 0.7  #: mm that a group may lie off a smooth surface through all
 _WIDEST = 36.0  #: mm, the boxes of a group

@@ -19,11 +19,8 @@ FAINT = 16  #: of 255, by how much anything is, on paper without noise
 _SPOT = 0.4  #: mm2, strong ink no larger is dust
 _FAINT_SPOT = 0.9  #: mm2, the same of what is faint, as the rim of dust is
 _SPOTS = 0.025  #: share of an empty box that is faint in spots, at most
-#: Mm above and below a box: outside of its outline, and short of what is printed there.
-_BEYOND = (
-    0.35,
-    1.15,
-)
+#: Strip above and below a box, mm: outside of its outline, and short of what is printed there.
+_BEYOND = (0.35, 1.15)
 _THIN_STROKE = 0.15  #: mm2, the least of a short stroke of a thin pen
 _OUTLINE = 0.45  #: mm to either side of an outline that is dark itself
 _RIM = 1.3  #: mm from a box's outline within which ink of a neighbour ends

@@ -15,16 +15,9 @@ EMPTY, TICKED, TAKEN_BACK, UNSURE = "empty", "ticked", "taken back", "unsure"
 
 _INSET = 0.7  #: mm within the outline
 #: Shares of a box that ink covers: a tick's least and most, a filled one's least.
-_LEAST, _MOST, _FILLED = (
-    0.05,
-    0.75,
-    0.7,
-)
-#: Mm, as far as a place of a filled box is from ink at most, and one of a crossed box at least.
-_BLANK = (
-    0.35,
-    0.6,
-)
+_LEAST, _MOST, _FILLED = (0.05, 0.75, 0.7)
+#: Distance from ink of a place in a filled box at most, and in a crossed box at least, mm.
+_BLANK = (0.35, 0.6)
 _STROKE = 2.4  #: mm, a tick is at least so wide and high
 _PEN = 88  #: of 255, the darkness of a pen's stroke in its middle; a stain's edge is lighter
 _BEYOND = 5.0  #: mm that a tick may run on outside of its box

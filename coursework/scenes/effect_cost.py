@@ -17,11 +17,7 @@ from coursework.scenes.staged import FLYWHEEL
 
 TOLERANCE = 0.01  #: of an output's largest value: a smaller change is one that a scene could do without
 #: Rounds that are timed; fewer where all of them would take more seconds.
-_ROUNDS, _FEWEST, _PATIENCE = (
-    7,
-    3,
-    10.0,
-)
+_ROUNDS, _FEWEST, _PATIENCE = (7, 3, 10.0)
 _ROUNDING = 1e-9  #: of the largest output of a unit, or of an output: what is smaller is rounding
 
 Run = Callable[[Scene], SceneTable]

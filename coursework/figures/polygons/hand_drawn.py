@@ -80,7 +80,7 @@ class JudgedDrawing:
     is_legible: bool  #: large enough to tell directions
     fits_stated_scale: bool  #: False where it is consistent at another scale than the stated one
     tolerance: float = TOLERANCE_MM
-    #: Mm on paper: each point from those before it.
+    #: Each point from those before it, mm on paper.
     ideal: Mapping[str, complex] = field(default_factory=dict)
 
     def is_right(self, point: str) -> bool:

@@ -109,15 +109,15 @@ class LessonNumbers:
         """Yield the pieces of a worked example; its head has its number, and its first drawing names it."""
         texts, number = words(self._lang)["lesson"], self._next("example")
         named = texts["example"].format(number)
-        is_posed = False
+        heads = {
+            f"**{texts['levels'][k]}": f"**{numbered}" for k, numbered in texts["numbered_levels"].items()
+        }
         for piece in pieces:
             if named and isinstance(piece, DrawnPiece):
                 piece, named = replace(piece, example=named), ""
-            if not is_posed and isinstance(piece, ProsePiece):
-                is_posed = True
-                level = next(k for k, head in texts["levels"].items() if piece.text.startswith(f"**{head}"))
-                rest = piece.text.removeprefix(f"**{texts['levels'][level]}")
-                piece = ProsePiece(f"**{texts['numbered_levels'][level].format(number)}{rest}")
+            if heads and isinstance(piece, ProsePiece):  # the first one poses the example
+                head = next(head for head in heads if piece.text.startswith(head))
+                piece, heads = ProsePiece(heads[head].format(number) + piece.text.removeprefix(head)), {}
             yield piece
 
     def prose(self, text: str) -> Iterator[Piece]:

@@ -149,8 +149,8 @@ def _sheet(
 ) -> StudentSheet:
     machine, graded = now.machine[sheet_key], now.graded[sheet_key]
     lines = [
-        _line(request, now, machine, graded, part, happened.get((machine.exercise, part), []))
-        for part in machine.lines
+        _line(request, now, machine, graded, part, number, happened.get((machine.exercise, part), []))
+        for part, number in now.questions.on_paper(machine.exercise, machine.lines).items()
     ]
     title = lines[0].question_card.handout.title if lines else machine.exercise
     figure = drawn_figure(drawn, machine.sitting, lines[0].question_card.handout) if lines else None
@@ -164,15 +164,16 @@ def _line(
     machine: Graded,
     graded: Graded,
     part: str,
+    number: str,
     happened: list[HistoryEvent],
 ) -> AnswerLine:
     events = [event for event in happened if event.seed in ("", str(machine.seed))]
     events = [event for event in events if event.sitting in (0, machine.sitting)]
     lines = tuple(_history_line(request, event) for event in events)
-    mark, numbers = graded.lines[part], now.questions.on_paper(machine.exercise, machine.lines)
+    mark = graded.lines[part]
     return AnswerLine(
         question_card(now.course, now.issued, machine, part, request.lang),
-        numbers[part],
+        number,
         machine.lines[part],
         mark,
         sign_of(mark),

@@ -26,7 +26,6 @@ from coursework.database.submissions import submissions_of
 from coursework.errors import CourseworkError
 from coursework.gradebook.book import Gradebook, Result, results
 from coursework.gradebook.graded_sheet import Graded
-from coursework.issuing.issued import Issued
 from coursework.issuing.questions import PaperQuestions
 from coursework.language.words import words
 from coursework.platforms.lti.launch import Launch
@@ -46,7 +45,7 @@ _PAUSE = 5.0  #: seconds between two checks
 class Marked(NamedTuple):
     """Current marks of a student."""
 
-    issued: Issued
+    questions: PaperQuestions
     result: Result
     sheets: Sequence[Graded]  #: of the submission that counts
     waits: bool  #: some answers wait for a person
@@ -62,7 +61,7 @@ class Marked(NamedTuple):
 def marked_in(now: ClassState, student: str) -> Marked | None:
     """Return the marks of a student from the state of the class; None before the first submission."""
     sheets = [graded for graded in now.graded.values() if graded.student == student]
-    return _marked(now.issued, now.results.get(student), sheets)
+    return _marked(now.questions, now.results.get(student), sheets)
 
 
 def marked_of(course: Course[Any], connection: Connection, number: int, student: str) -> Marked | None:
@@ -71,14 +70,15 @@ def marked_of(course: Course[Any], connection: Connection, number: int, student:
     book = Gradebook(adjustments.on(issued))
     for graded in sheets:
         book.add(graded)
-    return _marked(issued, dict(results(book)).get(student), sheets)
+    questions = PaperQuestions.of(course, issued, on_papers=True)
+    return _marked(questions, dict(results(book)).get(student), sheets)
 
 
-def _marked(issued: Issued, result: Result | None, sheets: Sequence[Graded]) -> Marked | None:
+def _marked(questions: PaperQuestions, result: Result | None, sheets: Sequence[Graded]) -> Marked | None:
     counted = [graded for graded in sheets if result and graded.sitting == result.sitting]
     if result is None or not counted:
         return None
-    return Marked(issued, result, counted, any(graded.open for graded in counted))
+    return Marked(questions, result, counted, any(graded.open for graded in counted))
 
 
 def score_of(
@@ -94,7 +94,7 @@ def score_of(
         marked = marked_in(now, student) if now else marked_of(site.course, connection, number, student)
     if marked is None:
         return None
-    comment = _comment(site.course, marked, marked.given(state), lang)
+    comment = _comment(marked, marked.given(state), lang)
     return Score(marked.given(state), marked.result.out_of, comment, marked.waits)
 
 
@@ -112,14 +112,13 @@ def assignment_state(
     )
 
 
-def _comment(course: Course, marked: Marked, given: float, lang: str) -> str:
+def _comment(marked: Marked, given: float, lang: str) -> str:
     texts = words(lang)["lti"]
-    questions = PaperQuestions.of(course, marked.issued, on_papers=True)
     sheets = {sheet.exercise: sheet for sheet in marked.sheets}
     lines = [
         texts["comment_line"].format(number, verdict_word(sheets[name].lines[part].verdict, lang))
-        for name in dict.fromkeys(name for name, _ in questions if name in sheets)
-        for part, number in questions.on_paper(name, sheets[name].lines).items()
+        for name in dict.fromkeys(name for name, _ in marked.questions if name in sheets)
+        for part, number in marked.questions.on_paper(name, sheets[name].lines).items()
     ]
     values = {"points": points_number(given, lang), "out_of": points_number(marked.result.out_of, lang)}
     comment = str(texts["comment"]).format(**values, number=marked.result.sitting, verdicts="; ".join(lines))

@@ -79,11 +79,7 @@ def find(done: Sequence[Submission], code: str) -> Submission:
 
 
 #: Seconds until a page reloads: minimum, addition for each earlier submission, maximum.
-_SOON, _EACH, _LONGEST = (
-    3.0,
-    0.2,
-    60.0,
-)
+_SOON, _EACH, _LONGEST = (3.0, 0.2, 60.0)
 
 
 class PendingMarking(NamedTuple):

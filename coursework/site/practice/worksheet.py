@@ -407,7 +407,7 @@ class Worksheet:
             "copied": checked.copied,
         }
 
-    @property
+    @cached_property
     def motion_tells(self) -> tuple[str, ...]:
         """Names of the questions whose answer the motion tells."""
         return told_by_motion(self.variant)
