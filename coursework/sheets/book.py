@@ -175,7 +175,13 @@ class Drill:
     answer: str
     quantity: str
     values: Mapping[str, object]  #: what it gives, by name
-    result: float  #: what the answer says, with all digits
+    result: float | str  #: what the answer says, with all digits, or a case
+    asked: str  #: what it asks, without its numbers
+
+    @property
+    def kinds(self) -> tuple[str, str]:
+        """Question and formula: drills that differ in their numbers alone share both."""
+        return self.asked, f"{self.quantity} {sorted(self.values)}"
 
     @property
     def is_odd(self) -> bool:

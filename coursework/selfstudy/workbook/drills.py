@@ -1,15 +1,17 @@
 """Drills of a lesson: questions of two minutes, drawn from variants of its exercises.
 
-A drill asks one quantity and gives what its formula takes: one step back, two steps, or the data alone. The
-answer is computed from the numbers as printed, so that who puts them in finds the digits of the book.
+A drill asks one quantity and gives what its formula takes: one step back, two steps, or the data alone; or
+it tells the quantity, and asks a datum. The answer is computed from the numbers as printed, so that who puts
+them in finds the digits of the book.
 """
 
 from __future__ import annotations
 
 import math
+from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
-from itertools import chain, zip_longest
+from itertools import chain, product, zip_longest
 from string import ascii_uppercase
 from typing import Any
 
@@ -19,6 +21,7 @@ from coursework.course.variant import Variant
 from coursework.errors import BadCourse, CourseworkError
 from coursework.issuing.issuing import distinct_variants
 from coursework.language.numbers import unit_latex
+from coursework.language.words import words
 from coursework.model import Part
 from coursework.quantities.formula_latex import number_latex
 from coursework.rendering.views import given_formula, given_words
@@ -26,6 +29,7 @@ from coursework.selfstudy.worked import named_question
 from coursework.sheets.book import Drill, Judgement, LessonText
 from coursework.sheets.following import needs
 from coursework.sheets.handout import handout
+from coursework.sheets.sheet import Question
 
 GRADES = (4, 3, 3)  #: drills of each grade
 _FAR, _APART = 700_000, 1_000  #: seeds away from all others, and between two books
@@ -44,12 +48,14 @@ _SHORT = (
     "matrix",
     "complex",
 )
-_MOST = 4  #: drills of a grade that ask the same
+_MOST = 2  #: drills of a lesson that ask the same with other numbers
 _GIVEN = 6  #: numbers that a drill gives at most
 _STEPS = (0, 1, 2, 4)  #: formulas that a drill of each grade takes at most
 _DIGITS = 4  #: of a number that is given though it is computed
 _LOST = 0.01  #: how far its rounding may move the answer
+_BACK = 0.002  #: how far a datum may be from what is found back
 _MEASURED = ("number", "integer", "angle")
+_SPREAD = (-1, 0.3, 0.6, 1, 2, 3)  #: times a datum: who is asked for it has a line to solve, so one answer
 
 
 def drills_of(
@@ -78,14 +84,15 @@ def drills_of(
         How many of each grade.
     """
     drawn = {name: _variants(course, name, lang, seed) for name in exercises}
-    posed: set[tuple[str, str]] = set()
+    posed: Counter[str] = Counter()
     found: list[list[Drill]] = [[] for _ in grades]
     for grade, count in enumerate(grades, 1):
-        _fill(found[grade - 1], drawn, grade, count, posed)
-    for grade in (2, 1, 3):  # a lesson whose formulas are short has more of the others
-        _fill(
-            found[grade - 1], drawn, grade, len(found[grade - 1]) + sum(grades) - sum(map(len, found)), posed
-        )
+        here = found[grade - 1]
+        for most, back in ((count - 1, False), (count, True), (count, False)):
+            _fill(here, drawn, grade, most, posed, back=back)
+    for grade, back in product((2, 1, 3), (False, True)):  # a lesson of short formulas has more of the others
+        here = found[grade - 1]
+        _fill(here, drawn, grade, len(here) + sum(grades) - sum(map(len, found)), posed, back=back)
     in_order = enumerate(chain.from_iterable(found), 1)
     return tuple(replace(drill, number=f"{lesson}.{k}") for k, drill in in_order)
 
@@ -130,21 +137,25 @@ def _fill(
     drawn: Mapping[str, Sequence[Variant]],
     grade: int,
     count: int,
-    posed: set[tuple[str, str]],
+    posed: Counter[str],
+    *,
+    back: bool,
 ) -> None:
-    """Add drills of a grade until there are so many, or no question is left."""
+    """Add drills of a grade until there are so many, or no question is left; ``back`` from the quantity to a
+    datum."""
     for variant, part in _in_turn(drawn, grade):
         if len(found) >= count:
             return
-        if (
-            sum(one.quantity == part.quantity and one.exercise == variant.exercise.name for one in found)
-            >= _MOST
-        ):
-            continue
-        drill = _drill(variant, part, grade)
-        if drill and not {(drill.exercise, drill.answer), ("", drill.text)} & posed:
-            posed |= {(drill.exercise, drill.answer), ("", drill.text)}
-            found.append(drill)
+        drill = _drill(variant, part, grade, back=back)
+        kinds = drill.kinds if drill else ()
+        if drill and all(posed[kind] < _MOST for kind in kinds):
+            variant_told = f"{drill.exercise} {drill.seed} "
+            asked = variant_told + part.quantity
+            given = {variant_told + name for name in drill.values if name not in variant.used} - {asked}
+            same = (drill.text, f"{drill.exercise} {drill.answer}", asked, *(f"{one}?" for one in given))
+            if not any(posed[one] for one in same):  # nor does the answer of one stand in another
+                posed.update((*same[:3], *given, f"{asked}?", *kinds))
+                found.append(drill)
 
 
 def _in_turn(drawn: Mapping[str, Sequence[Variant]], grade: int) -> Iterator[tuple[Variant, Part]]:
@@ -152,7 +163,10 @@ def _in_turn(drawn: Mapping[str, Sequence[Variant]], grade: int) -> Iterator[tup
     the one before."""
     rows = []
     for variants in drawn.values():
-        asked = [[p for p in variant.parts if p.kind in _MEASURED and not p.judge] for variant in variants]
+        asked = [
+            [p for p in variant.parts if p.kind in (*_MEASURED, "choice") and not p.judge]
+            for variant in variants
+        ]
         most = max(map(len, asked), default=0)
         first = 2 * (grade - 1)
         pairs = (
@@ -168,7 +182,7 @@ def _in_turn(drawn: Mapping[str, Sequence[Variant]], grade: int) -> Iterator[tup
     yield from (pair for pair in chain.from_iterable(zip_longest(*rows)) if pair is not None)
 
 
-def _drill(variant: Variant, part: Part, grade: int) -> Drill | None:
+def _drill(variant: Variant, part: Part, grade: int, *, back: bool) -> Drill | None:
     """Return a drill, or None where a question makes none of this grade."""
     try:
         names = _data(variant, part.quantity, grade)
@@ -176,27 +190,92 @@ def _drill(variant: Variant, part: Part, grade: int) -> Drill | None:
             return None
         values = {name: _as_printed(variant, name) for name in names}
         graph = variant.exercise.solution.graph.textbook
-        answer = graph.evaluate([part.quantity], values)[part.quantity]
-        exact = variant.quantities([part.quantity])[part.quantity]
-        if not _is_fit(answer, exact):
+        found = graph.evaluate([part.quantity], values), variant.quantities([part.quantity])
+        answer, exact = (one[part.quantity] for one in found)
+        if part.kind == "choice":
+            answer, exact = str(answer), str(exact)
+        if not _is_fit(answer, exact, values):
             return None
-        given = ", ".join(_given(variant, name, value) for name, value in values.items())
-    except (CourseworkError, ArithmeticError, TypeError, ValueError):
+        question = next(q for q in handout(variant).questions if q.id == part.id)
+        drill = Drill(
+            "",  # numbered in their order
+            grade,
+            variant.exercise.name,
+            variant.seed,
+            named_question(question),
+            "",
+            part.quantity,
+            values,
+            answer,
+            f"{question.prompt} {back}",
+        )
+        if back:
+            drill = _turned(variant, replace(question, unit=""), drill)
+        elif question.choices:
+            cases = dict(question.choices)
+            drill = replace(drill, text=f"{drill.text} ({'; '.join(cases.values())})", answer=cases[answer])
+        else:
+            drill = replace(drill, answer=_told(variant, part.quantity, answer), result=float(answer))
+        given = ", ".join(
+            _given(variant, name, drill.values[name]) for name in names if name != drill.quantity
+        )
+    except (CourseworkError, ArithmeticError, LookupError, TypeError, ValueError):
         return None
-    question = next(q for q in handout(variant).questions if q.id == part.id)
-    unit = variant.exercise.units.get(part.quantity, "1")
-    told = f"${number_latex(answer, '1', _DIGITS)}{unit_latex(unit)}$"
-    return Drill(
-        "",  # numbered in their order
-        grade,
-        variant.exercise.name,
-        variant.seed,
-        f"{given}. {named_question(question)}",
-        told,
-        part.quantity,
-        values,
-        float(answer),
+    return replace(drill, text=f"{given}. {drill.text}" if given else drill.text)
+
+
+def _turned(variant: Variant, question: Question, drill: Drill) -> Drill:
+    """Return a drill that tells the quantity, and asks a datum in its place."""
+    printed = float(f"{drill.result:.{_DIGITS}g}")
+    sought, found = _line_back(variant, drill.quantity, drill.values, printed)
+    given = next(g for g in handout(variant).given if g.name == sought)
+    unit = f" ({given.unit})" if given.unit else ""
+    said = words(variant.lang)["book"]["drill_back"]
+    told = said.format(_told(variant, drill.quantity, printed), f"${given.symbol}${unit}")
+    return replace(
+        drill,
+        text=f"{named_question(question)} {told}",
+        answer=_told(variant, sought, found),
+        quantity=sought,
+        values={**{k: v for k, v in drill.values.items() if k != sought}, drill.quantity: printed},
+        result=found,
     )
+
+
+def _line_back(
+    variant: Variant, quantity: str, values: Mapping[str, Any], printed: float
+) -> tuple[str, float]:
+    """Return a datum on which the quantity depends by a straight line, and what it is where the quantity is
+    as printed; the datum is another one for each variant.
+
+    Raises
+    ------
+    ValueError
+        There is none whose digits the quantity gives back.
+    """
+    graph = variant.exercise.solution.graph.textbook
+    measured = [given.name for given in handout(variant).given if given.is_number and given.name in values]
+    turn = variant.seed % len(measured) if measured else 0
+    for name in (*measured[turn:], *measured[:turn]):
+        here = [float(values[name]) * times for times in _SPREAD]
+        there = [graph.evaluate([quantity], {**values, name: at})[quantity] for at in here]
+        rise, run = there[-1] - there[0], here[-1] - here[0]
+        size = max(map(abs, there))
+        if abs(rise) <= 1e-3 * size or not all(
+            abs((y - there[0]) * run - (x - here[0]) * rise) <= 1e-9 * size * abs(run)
+            for x, y in zip(here, there, strict=True)
+        ):
+            continue
+        found = here[0] + (printed - there[0]) * run / rise
+        if abs(found - values[name]) <= _BACK * abs(values[name]):
+            return name, found
+    raise ValueError(quantity)
+
+
+def _told(variant: Variant, name: str, value: float) -> str:
+    """Return a number with its unit."""
+    unit = variant.exercise.units.get(name, "1")
+    return f"${number_latex(value, '1', _DIGITS)}{unit_latex(unit)}$"
 
 
 def _data(variant: Variant, quantity: str, grade: int) -> list[str]:
@@ -246,8 +325,16 @@ def _as_printed(variant: Variant, name: str) -> Any:
     return float(f"{value:.{_DIGITS}g}")
 
 
-def _is_fit(answer: Any, exact: Any) -> bool:
-    if isinstance(answer, (bool, complex, str)) or not math.isfinite(answer):
+def _is_fit(answer: Any, exact: Any, values: Mapping[str, Any]) -> bool:
+    """Return whether rounding of what is given leaves the answer, and none of it is the answer already."""
+    if isinstance(answer, str):
+        return bool(answer == exact)
+    if isinstance(answer, (bool, complex)) or not math.isfinite(answer):
+        return False
+    if any(
+        isinstance(v, (int, float)) and abs(abs(v) - abs(answer)) <= 1e-3 * abs(answer)
+        for v in values.values()
+    ):
         return False
     return abs(answer - exact) <= _LOST * abs(exact) and abs(exact) > 1e-9
 
@@ -258,6 +345,4 @@ def _given(variant: Variant, name: str, value: Any) -> str:
         if given is None:  # it is drawn, and stands on no sheet
             raise ValueError(name)
         return f"${given_formula(given)}$" if given.is_number else given_words(given, variant.lang)
-    unit = variant.exercise.units.get(name, "1")
-    symbol = variant.exercise.solution_symbol(name)
-    return f"${symbol} = {number_latex(value, '1', _DIGITS)}{unit_latex(unit)}$"
+    return f"${variant.exercise.solution_symbol(name)} = {_told(variant, name, value)[1:]}"

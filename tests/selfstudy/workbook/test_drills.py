@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import cmath
 import math
+from collections import Counter
 
 import pytest
 from pdf_text import page_texts
@@ -38,15 +39,32 @@ def test_drills_are_answered_from_what_they_give(course):
     assert [drill.grade for drill in drills] == sorted(drill.grade for drill in drills)
     checked = 0
     for drill in drills:
-        if drill.quantity == "omega3" and "r1" in drill.values:
-            assert drill.result == pytest.approx(omega3_of_coupler(drill.values), rel=1e-3)
+        v = {**drill.values, drill.quantity: drill.result}
+        if {"omega3", "r1"} <= {*v}:
+            assert v["omega3"] == pytest.approx(omega3_of_coupler(v), rel=1e-3)
             checked += 1
-        elif drill.quantity in ("xP", "yP") and "theta3" in drill.values:
-            v = drill.values
+        elif "theta3" in v and (name := next((n for n in ("xP", "yP") if n in v), None)):
             P = turned(v["r2"], v["theta2"]) + turned(v["AP"], v["theta3"] + v["beta"])
-            assert drill.result == pytest.approx(P.real if drill.quantity == "xP" else P.imag, rel=1e-3)
+            assert v[name] == pytest.approx(P.real if name == "xP" else P.imag, rel=1e-3)
             checked += 1
-    assert checked >= 5
+    assert checked >= 7
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("seed", [0, 1])
+def test_no_lesson_asks_one_formula_more_than_twice_nor_what_it_tells(course, seed):
+    for number, section in enumerate(
+        (section for chapter in course.folder.chapters for section in chapter.sections), 1
+    ):
+        drills = drills_of(course, section.exercises, number, "fr", seed)
+        kinds = Counter(kind for drill in drills for kind in drill.kinds)
+        assert not [kind for kind, times in kinds.items() if times > 2], section.lesson
+        told = {(d.exercise, d.seed, name) for d in drills for name in d.values if d.quantity != name}
+        drawn = {(d.exercise, d.seed): {*course[d.exercise].variant(d.seed).used} for d in drills}
+        found = {(d.exercise, d.seed, d.quantity) for d in drills}
+        assert not [one for one in told & found if one[2] not in drawn[one[:2]]], section.lesson
+        numbers = [d for d in drills if not isinstance(d.result, str)]
+        assert not [d.text for d in numbers if d.result in d.values.values()], section.lesson
 
 
 def test_another_book_has_other_drills_and_both_languages_have_the_same(course):
@@ -138,3 +156,13 @@ def test_a_sentence_without_a_reason_is_told(small):
     folder = coursework.open_course(small).folder
     with pytest.raises(BadCourse, match=r"true_or_false\.toml: rods: a sentence has no 'why'"):
         judgements_of(folder, LessonText("rods", 1, "en", "", (), ()))
+
+
+def test_a_lesson_without_exercises_has_no_drills_in_its_heading(small):
+    settings = small / "exercises/course.toml"
+    settings.write_text(settings.read_text("utf-8").replace('exercises = ["crank_pin"]\n', ""), "utf-8")
+    course = coursework.open_course(small)
+    renderer = renderer_of(course.folder)
+    book = bound(course, "en", answers="odd")
+    assert "<h2>True or false, lesson 1</h2>" in renderer.book_pages(book)["rods.html"]()
+    assert "Drills, lesson" not in "".join(page_texts(renderer.book_pdf(book)))
