@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 
 from coursework.linkages.compiled import CompiledLinkage
 from coursework.linkages.entries import GROUND
-from coursework.linkages.vectors import are_drawn
+from coursework.linkages.vectors import POLYGONS
 from coursework.system.toml_files import toml_value
 
 SPREAD, STEP = 0.2, 5.0  #: of a length that varies: its share to both sides, and its step in mm
@@ -104,7 +104,7 @@ def questions(made: CompiledLinkage) -> dict[str, list[CheckBox]]:
         ):
             rates = [t.replace("theta", stem, 1) for t in turns]
             able[key] = [*rates, *(f"{s}{end}" for s in slides), *(f"{mark}{p}" for p in points)]
-        able["polygon"] = ("velocity", "acceleration") if are_drawn(formulas.groups) else ()
+        able["polygon"] = [kind for kind in POLYGONS if kind not in made.undrawn]
         bodies = {"1": GROUND, **{b: b for b in linkage.bodies if b.isdigit() and len(b) == 1}}
         centres = [f"I{i}{j}" for i in bodies for j in bodies if i < j and i != "1"]
         able["instant_centres"] = [

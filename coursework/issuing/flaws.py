@@ -15,9 +15,11 @@ from typing import Any, TypeVar
 import numpy as np
 
 from coursework.course.answer_key import Key, exists, ill_limit
+from coursework.course.marking_rules import ILL_DEGREES, ILL_SHARE
 from coursework.course.variant import Variant
 from coursework.errors import CourseworkError
 from coursework.marking.judges import judged, judges_of
+from coursework.messages import Message
 from coursework.model import Part
 from coursework.solution import Judged
 
@@ -25,8 +27,6 @@ V = TypeVar("V", bound=Variant)
 
 SHOWN = 2.0  #: half-widths beyond which a mistake must be recognised
 HIDDEN = 0.25  #: half-widths within which a mistake cannot be recognised
-
-ILL, MURKY, UNSOLVED = "ill-conditioned", "murky", "unsolved"
 
 
 def visibility(key: Key, mistake: str) -> Iterator[tuple[Part, str]]:
@@ -84,24 +84,28 @@ def conditioning(key: Key) -> float:
     return max(shares, default=0.0)
 
 
-def flaws(key: Key) -> Iterator[str]:
-    """Yield the flaws of a variant: ``ill-conditioned: PART``, ``murky: MISTAKE on PART``."""
+def flaws(key: Key) -> Iterator[Message]:
+    """Yield the flaws of a variant: ``ill-conditioned: …``, ``murky: MISTAKE on PART``."""
     try:
         reference = key.reference
     except CourseworkError as fault:
-        yield f"{UNSOLVED}: {fault}"
+        yield Message("unsolved: {problem}", problem=fault)
         return
     for part in key.variant.parts:
         if part.has_margin and key.envelope.get(part.quantity, 0.0) > ill_limit(
             part, reference[part.quantity]
         ):
-            yield f"{ILL}: {part.id}"
+            yield Message(
+                "ill-conditioned: rounding on the way may cost {part} more than {most}",
+                part=part.id,
+                most=f"{ILL_DEGREES:g}°" if part.unit == "deg" else f"{100 * ILL_SHARE:g} %",
+            )
     for name, mistake in key.solution.mistakes.items():
         if not mistake.approximation:
             # Jointly judged parts are right or wrong, never murky.
             for part, wrong in _reached(key, name):
                 if not part.judge and _seen(key, part, wrong) == "murky":
-                    yield f"{MURKY}: {name} on {part.id}"
+                    yield Message("murky: {mistake} on {part}", mistake=name, part=part.id)
 
 
 def try_judges(key: Key) -> None:

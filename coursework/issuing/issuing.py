@@ -22,7 +22,7 @@ from coursework.issuing.protection import valid_variants
 from coursework.issuing.roster import Student
 from coursework.issuing.students import file_stems
 from coursework.kinds.kind import Asking
-from coursework.messages import Message, localised
+from coursework.messages import Message, joined_notes
 from coursework.sheets.sheet import AnswerSheet, Handout, StudySheet
 
 V = TypeVar("V", bound=Variant)
@@ -91,12 +91,15 @@ def distinct_variants(
         raise Starved(
             (
                 "{exercise}: {variants} requested, {reason}{flaws}; request fewer, widen a range or "
-                "make a step finer"
+                "make a step finer{digits}"
             ),
             exercise=exercise.name,
             variants=counted(count, "different variant"),
             reason=reason,
             flaws=_passed_over(refused),
+            digits=Message(", or let students keep more digits ([marking], then digits = 6)")
+            if any(flaw.startswith("ill-conditioned") for flaw in refused)
+            else "",
         )
     return list(by_values.values())
 
@@ -105,8 +108,8 @@ def _passed_over(refused: Counter[str]) -> str:
     """Return the most frequent flaws of the skipped variants, for a message; empty if there is none."""
     if not refused:
         return ""
-    flaws = ", ".join(f"{localised(flaw)} ({number}×)" for flaw, number in refused.most_common(3))
-    return Message("; skipped: {flaws}", flaws=flaws)
+    flaws = (Message("{flaw} ({number}×)", flaw=f, number=n) for f, n in refused.most_common(3))
+    return Message("; skipped: {flaws}", flaws=joined_notes(flaws, ", "))
 
 
 def _that_ask(variants: Sequence[V], fits: Callable[[V], bool] | None) -> list[V]:
@@ -227,7 +230,7 @@ def reservations(exercise: CourseExercise[V], variant: V) -> list[str]:
             "{exercise}: a draw would refuse these values, where a wrong answer may pass for right, or "
             "rounding cost a right one: {flaws}",
             exercise=exercise.name,
-            flaws=", ".join(map(localised, refused)),
+            flaws=joined_notes(refused, ", "),
         )
     ]
 

@@ -8,8 +8,8 @@ import linecache
 import os
 import sys
 import weakref
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Collection, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
 from pathlib import Path
 from types import ModuleType
@@ -27,7 +27,8 @@ from coursework.linkages.points import Quantity, names_in
 from coursework.linkages.questions import QuestionWriter
 from coursework.linkages.sentences import exercise_text, solution_text, spoken
 from coursework.linkages.still_sides import refuse_still_sides
-from coursework.linkages.vectors import PAPER_MM
+from coursework.linkages.vectors import PAPER_MM, POLYGONS
+from coursework.messages import Message, as_message
 from coursework.model import symbol_of
 
 _IMPORTS = """\
@@ -215,6 +216,8 @@ class CompiledLinkage:
                 s.replace(f"0.02 * {linkage.speed})", f"0.02 * abs({linkage.speed}))") for s in slow
             )
             results.append(_condition("bodies_turn_visibly", code))
+        if varies and (swings := self._swings(asked)):
+            results.append(_condition("slides_move_visibly", " & ".join(swings)))
         reader = ExpressionReader(
             {
                 **{n: e.unit for n, e in linkage.given.items()},
@@ -251,6 +254,25 @@ class CompiledLinkage:
                 (f"detectable({m!r}, {', '.join(map(repr, wanted[m]))})", "") for m in modes if wanted.get(m)
             ]
         return results, helpers
+
+    def _swings(self, asked: Collection[str]) -> list[str]:
+        """Return conditions that slides go to and fro by more than a fiftieth of the longest length, as
+        code, of each of which a rate is asked.
+
+        Of a motion to and fro, the speed and the acceleration together, over those of the driver, are half
+        the travel at every instant: at a dead centre as in the middle.
+        """
+        linkage = self.linkage
+        lengths = [f"abs({n})" for n, e in linkage.given.items() if e.unit == "mm" and n != linkage.moved]
+        if not linkage.speed or not lengths:
+            return []
+        longest = f"np.maximum.reduce(np.broadcast_arrays({', '.join(lengths)}))"
+        rate = f"abs({linkage.speed})" + ("" if linkage.drive.kind == "turn" else f" / {longest}")
+        return [
+            f"(np.hypot({s.rates[0]} * {rate}, {s.rates[1]}) > 0.01 * {longest} * ({rate})**2)"
+            for s in linkage.followed_slides
+            if {*s.rates} & {*asked}
+        ]
 
     def _closing(self) -> Iterator[tuple[str, str]]:
         """Yield a constraint for each group: that its bodies meet, wherever the groups before it do."""
@@ -547,6 +569,26 @@ class CompiledLinkage:
             points.append(shared[0] if shared else "")
         return f", {tuple(points)!r}" if any(points) else ""
 
+    # ------------------------------------------------------------------ polygons
+
+    def refuse_still_polygons(self) -> None:
+        """Refuse a polygon that is asked and has nothing to draw, with the line of the question."""
+        if polygons := self.questions.polygons:
+            modules = (self._executed(kind, self.linkage.path.stem) for kind in ("exercises", "solutions"))
+            refuse_still_sides(polygons, *modules)
+
+    @cached_property
+    def undrawn(self) -> Mapping[str, Message]:
+        """By kind, why a polygon would be refused if it were asked; nothing for one that can be drawn."""
+        reasons = {}
+        for kind in POLYGONS if self.linkage.speed else ():
+            alone = replace(self.linkage, ask={"polygon": [kind]}, required=(), loads=(), known=())
+            try:
+                CompiledLinkage(alone).refuse_still_polygons()
+            except BadInput as fault:
+                reasons[kind] = as_message(fault).values["problem"]
+        return reasons
+
     # --------------------------------------------------------------------- texts
 
     def text(self, kind: str, lang: str) -> str:
@@ -609,10 +651,7 @@ class _SourceLines:
 def _compiled(path: Path, shown: str, changed: int) -> CompiledLinkage:
     made = CompiledLinkage(read_linkage(path, shown))
     made.exercise, made.solution  # noqa: B018  # what makes no sense in the file is found while they are written
-    if polygons := made.questions.polygons:
-        refuse_still_sides(
-            polygons, *(made._executed(kind, path.stem) for kind in ("exercises", "solutions"))
-        )
+    made.refuse_still_polygons()
     return made
 
 

@@ -14,7 +14,7 @@ from coursework.linkages.formulas import FormulaWriter
 from coursework.linkages.groups import Group
 from coursework.linkages.points import UsualMistake, over
 from coursework.linkages.terms import Heading, Plane, Sum
-from coursework.linkages.vectors import PolygonWriter
+from coursework.linkages.vectors import POLYGONS, PolygonWriter
 from coursework.messages import Message
 
 _CENTRE = re.compile(r"I(\d+|[a-z][a-z0-9]*?)_?(\d+|[a-z][a-z0-9]*)\Z")
@@ -470,7 +470,7 @@ class QuestionWriter:
 
     def _polygon(self, names: list[str]) -> None:
         for name in names:
-            if name not in ("velocity", "acceleration"):
+            if name not in POLYGONS:
                 raise self.linkage.refused(
                     ("ask", "polygon"),
                     "a polygon is of 'velocity' or 'acceleration'; found {name!r}",

@@ -1,5 +1,5 @@
-"""Sides of polygons that have no length in any position, as those of a body that never turns: nothing is
-there to draw."""
+"""Sides of polygons that have next to no length in any position, as those of a body that never turns: nothing
+is there to draw."""
 
 from __future__ import annotations
 
@@ -12,14 +12,15 @@ import numpy as np
 from coursework.linkages.points import names_in
 from coursework.linkages.vectors import PolygonWriter
 from coursework.markup.markdown import plain_line
+from coursework.messages import Message
 from coursework.solution import Solution
 
-_SAMPLES = 64
+_SAMPLES = 512
 _NOTHING = 1e-9  #: of the longest side
 
 
 def refuse_still_sides(polygons: Sequence[PolygonWriter], exercise: ModuleType, solution: ModuleType) -> None:
-    """Refuse polygons of which a side that must be long enough to draw has no length wherever the mechanism
+    """Refuse polygons of which a side that must be long enough to draw is too short wherever the mechanism
     closes.
 
     Parameters
@@ -32,7 +33,7 @@ def refuse_still_sides(polygons: Sequence[PolygonWriter], exercise: ModuleType, 
     Raises
     ------
     BadInput
-        A side has no length, with the line of the question.
+        A side is too short, with the line of the question.
     """
     known = Solution.of(exercise.__name__, solution, "").graph
     given = _samples(exercise.EXERCISE.given)
@@ -46,15 +47,29 @@ def refuse_still_sides(polygons: Sequence[PolygonWriter], exercise: ModuleType, 
             found = graph.evaluate([*sides], {n: v for n, v in given.items() if n in graph.leaves})
         lengths = np.array([np.broadcast_to(found[name], _SAMPLES) for name in sides])
         lengths = lengths[:, np.isfinite(lengths).all(axis=0)]
-        is_still = (lengths <= _NOTHING * lengths.max(axis=0)).all(axis=1)
-        for side, has_none in zip(sides.values(), is_still, strict=True):
-            if lengths.size and has_none and f"abs({side.value})" in polygon.lines:
+        if not lengths.size:
+            continue
+        shares = (lengths / lengths.max(axis=0).clip(min=1e-300)).max(axis=1)
+        for side, share in zip(sides.values(), shares, strict=True):
+            # Half of what a variant must have: one that has it was not missed by chance.
+            if share < polygon.least / 2 and f"abs({side.value})" in polygon.lines:
+                vector = plain_line(f"${side.name}$", "en")
+                why = (
+                    Message("{vector} is zero in all positions, as on a body that never turns", vector=vector)
+                    if share <= _NOTHING
+                    else Message(
+                        "{vector} has at most {share:.2g} % of the longest vector, and is drawn from "
+                        "{least:g} % on",
+                        vector=vector,
+                        share=100 * share,
+                        least=100 * polygon.least,
+                    )
+                )
                 raise polygon.linkage.refused(
                     ("ask", "polygon"),
-                    "{vector} is zero in all positions, as on a body that never turns: a polygon of "
-                    "{kind!r} has nothing to draw there; ask {table} in its place",
+                    "{why}: a polygon of {kind!r} has nothing to draw there; ask {table} in its place",
+                    why=why,
                     kind=polygon.kind,
-                    vector=plain_line(f"${side.name}$", "en"),
                     table="velocities" if polygon.kind == "velocity" else "accelerations",
                 )
 

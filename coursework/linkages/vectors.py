@@ -8,19 +8,16 @@ from dataclasses import dataclass
 
 from coursework.linkages.entries import GROUND, SlideEntry
 from coursework.linkages.formulas import FormulaWriter
-from coursework.linkages.groups import Dyad, Group, Wheel
+from coursework.linkages.groups import Dyad, Wheel
 from coursework.linkages.points import Quantity, UsualMistake, names_in
 from coursework.linkages.terms import Heading, is_zero
 
 PAPER_MM = (160, 90)  #: the box of millimetre paper to draw in
-_FUNCTIONS = {"velocity": "polygon_of_velocities", "acceleration": "polygon_of_accelerations"}
+POLYGONS = {
+    "velocity": "polygon_of_velocities",
+    "acceleration": "polygon_of_accelerations",
+}  #: each by what draws it
 _POLES = {"velocity": "p_v", "acceleration": "p_a"}
-
-
-def are_drawn(groups: Sequence[Group]) -> bool:
-    """Return True if groups are drawn one after another; one of class III and above, which moves as a whole,
-    is not."""
-    return all(isinstance(group, (Dyad, Wheel)) for group in groups)
 
 
 @dataclass(frozen=True)
@@ -66,7 +63,7 @@ class PolygonWriter:
     def code(self, scale: str) -> str:
         """Return the polygon at a scale, as code."""
         pieces = [f"({', '.join(side.call for side in piece)},)" for piece in self.pieces]
-        return f"{_FUNCTIONS[self.kind]}({', '.join(pieces)}, scale={scale})"
+        return f"{POLYGONS[self.kind]}({', '.join(pieces)}, scale={scale})"
 
     # -------------------------------------------------------------------- sides
 

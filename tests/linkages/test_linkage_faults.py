@@ -8,6 +8,7 @@ from linkage_samples import FOLDER
 from tables import each_row
 
 from coursework import open_course
+from coursework.authoring.linkage_editing import questions
 from coursework.authoring.linkage_files import mechanism_alone
 from coursework.errors import BadCourse, BadInput, Starved
 from coursework.linkages.compiled import compiled
@@ -252,25 +253,36 @@ def test_a_file_that_is_not_utf8_is_told_in_a_line(tmp_path):
 
 
 @each_row(
-    "theta2, refused",
+    "theta2, rod, refused",
     [
-        ('{ from = "30 deg", to = "150 deg", step = "5 deg" }', True),
-        ('{ from = "0 deg", to = "355 deg", step = "5 deg" }', False),
+        ('{ from = "30 deg", to = "150 deg", step = "5 deg" }', "r1", "is zero in all positions"),
+        (
+            '{ from = "30 deg", to = "150 deg", step = "5 deg" }',
+            "1.001 * r1",
+            r"has at most [\d.]+ % of the longest vector, and is drawn from 12 % on",
+        ),
+        ('{ from = "0 deg", to = "355 deg", step = "5 deg" }', "r1", ""),
     ],
 )
-def test_a_polygon_with_nothing_to_draw_is_refused_when_the_file_is_read(tmp_path, theta2, refused):
-    """A parallelogram's coupler never turns; where the crank goes round, that of the antiparallelogram
-    does."""
-    path = tmp_path / "parallelogram.toml"
+def test_a_polygon_with_nothing_to_draw_is_refused_when_the_file_is_read_and_not_offered(
+    theta2, rod, refused, tmp_path_factory
+):
+    """A parallelogram's coupler never turns, and one that is nearly its own hardly does; where the crank goes
+    round, that of the antiparallelogram does."""
+    path = tmp_path_factory.mktemp("still") / "parallelogram.toml"
     text = re.sub(r"theta2 = \{.*", f"theta2 = {theta2}", TOGGLE).replace(
         ', "transmission_angle(B) > 25 deg"', ""
     )
-    text = text.replace('B = "r3" }', 'B = "r1" }').replace(
+    text = text.replace('B = "r3" }', f'B = "{rod}" }}').replace(
         'C", points = { B = "r4" }', 'C", points = { B = "r2" }'
     )
     path.write_text(text, "utf-8")
-    if not refused:
-        compiled(path)
-        return
-    with pytest.raises(BadCourse, match=r"parallelogram.toml, line \d+: V⃗_B/A is zero in all positions"):
-        compiled(path)
+    if refused:
+        with pytest.raises(BadCourse, match=rf"parallelogram.toml, line \d+: V⃗_B/A {refused}"):
+            compiled(path)
+        path.write_text(re.sub(r"(?m)^polygon = .*", "", text), "utf-8")
+    made = compiled(path)
+    assert {"velocity"} - {*made.undrawn} == {
+        box.name for box in questions(made).get("polygon", ()) if box.name == "velocity"
+    }
+    assert bool(refused) == ("velocity" in made.undrawn)

@@ -9,6 +9,7 @@ from linkage_samples import FOLDER, NAMES, course
 from tables import each_row
 
 from coursework import open_course
+from coursework.authoring.linkage_files import mechanism_alone
 from coursework.scenes.scenes import Scene
 
 
@@ -279,6 +280,25 @@ def test_loops_through_a_guide_of_fixed_angle_are_met_by_the_positions(tmp_path)
             for side in equation.split("=")
         ]
         assert abs(sides[0] - sides[1]) < 1e-9 * abs(sides[0])
+
+
+def test_a_slide_of_which_a_rate_is_asked_goes_to_and_fro_visibly(tmp_path):
+    """Measured over a whole turn, and for dead centres too: at one the slide stands, and moves all the
+    same."""
+    text = (FOLDER / "exercises" / "slider_crank.toml").read_text("utf-8")
+    text = re.sub(r"(?m)^r2 = .*", 'r2 = { from = "0.5 mm", to = "6 mm", step = "0.5 mm" }', text)
+    text = re.sub(r"(?m)^theta2 = .*", 'theta2 = { from = "0 deg", to = "355 deg", step = "5 deg" }', text)
+    path = tmp_path / "slider_crank.toml"
+    path.write_text(text.partition("[ask]")[0] + '[ask]\nvelocities = ["x_dot"]\n', "utf-8")
+    turn = {"theta2": np.linspace(-180.0, 180.0, 73)}
+    shares, stands = [], False
+    with mechanism_alone(path, open_course) as (exercise, _):
+        for seed in range(60):
+            given = exercise.variant(seed).given
+            x = exercise.solve(**given | turn, only=("x",))["x"]
+            shares.append(np.ptp(x) / max(given["r2"], given["r3"]))
+            stands |= given["theta2"] in (0, 180)
+    assert (min(shares) > 0.018, max(shares) < 0.1, stands) == (True, True, True)
 
 
 def test_a_group_that_does_not_close_is_nan_there_and_says_so_alone():

@@ -6,6 +6,8 @@ with what the books print: R. L. Norton, *Design of Machinery*, tables P4-1 to P
 known of the curve or of the ratio.
 """
 
+import re
+
 import numpy as np
 import pytest
 from linkage_machine import Machine, efforts, pose
@@ -13,7 +15,10 @@ from tables import each_row
 
 from coursework import open_course
 from coursework.authoring.checks import check
+from coursework.errors import Starved
+from coursework.issuing.issuing import distinct_variants
 from coursework.linkages.compiled import compiled
+from coursework.messages import localised
 
 HEAD = """title = {{ fr = "Mécanisme", en = "Mechanism" }}
 [given]
@@ -294,6 +299,33 @@ def test_results_that_books_print_and_theorems_say(course):
     line = 3 / 16 * (given["a"] ** 2 - given["b"] ** 2) / (2 * given["c"])
     assert Q[:, 0] == pytest.approx(np.full(11, line), rel=1e-12)
     assert np.ptp(Q[:, 1]) > 30
+
+
+def test_what_remains_of_terms_that_cancel_is_asked_where_enough_digits_are_kept(tmp_path):
+    """The acceleration of the point that Hart's inversor leads on a line, which a known curve gives: with
+    four digits rounding takes too much of it, and it is said."""
+    text = HART.replace('alpha2 = "5 rad/s^2"', "")
+    text = re.sub(r"(?m)^theta2 = .*", 'theta2 = { from = "-6 deg", to = "6 deg", step = "1 deg" }', text)
+    exercises = {}
+    for digits in (4, 6):
+        folder = tmp_path / f"{digits}" / "exercises"
+        folder.mkdir(parents=True)
+        (folder / "hart.toml").write_text(text, "utf-8")
+        (folder / "course.toml").write_text(f"[marking]\ndigits = {digits}\n", "utf-8")
+        exercises[digits] = open_course(folder.parent)["hart"]
+    with pytest.raises(Starved) as few:
+        distinct_variants(exercises[4], 0, 12, "en")
+    for lang, why in (
+        ("en", "rounding on the way may cost a_Q more than 3 %"),
+        ("fr", "les arrondis de calcul peuvent coûter plus de 3 % à a_Q"),
+    ):
+        assert why in localised(few.value, lang)
+        assert "digits = 6" in localised(few.value, lang)
+    for variant in distinct_variants(exercises[6], 0, 12, "en"):
+        given, half = variant.given, np.radians(variant.given["theta2"]) / 2
+        line = 3 / 16 * (given["a"] ** 2 - given["b"] ** 2) / (2 * given["c"])  # y = line * tan(half)
+        bend = line * given["omega2"] ** 2 / 2 * np.tan(half) / np.cos(half) ** 2
+        assert variant.solution()["a_Q"] == pytest.approx([0.0, bend], abs=1e-9 * line * given["omega2"] ** 2)
 
 
 @pytest.mark.slow

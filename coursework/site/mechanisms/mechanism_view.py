@@ -146,6 +146,7 @@ def _found(path: Path, text: str, lang: str) -> dict[str, Any]:
             ],
             "lengths": lengths(text, made),
             "questions": questions(made),
+            "undrawn": [localised(why, lang) for why in dict.fromkeys(made.undrawn.values())],
             "symbols": {
                 n: exercise.symbol(n) if n in made.linkage.given else _symbol(n)
                 for n in (*made.linkage.given, *(c.name for able in questions(made).values() for c in able))
