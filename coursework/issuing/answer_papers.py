@@ -45,7 +45,7 @@ class AnswerPaper:
     def pages(self, course: Course[Any], lang: str = "en") -> tuple[AnswerPage, ...]:
         """Return the pages as printed; ``lang`` is the language of the units on them and does not change the
         layout."""
-        return answer_pages(self.variants(course), lang, self.size, self.code)
+        return answer_pages(self.variants(course), lang, self.size, self.code, alone=not self.assignment)
 
 
 def answer_papers(issued: Mapping[str, Any]) -> dict[str, AnswerPaper]:
@@ -77,5 +77,5 @@ def printed_handouts(
         return handouts
     records = tuple(issue.variant.record for issue in issues)
     code = paper_code(assignment, issues[0].student, issues[0].sitting, records, size)
-    pages = answer_pages(variants, lang, size, code)
+    pages = answer_pages(variants, lang, size, code, alone=not assignment)
     return tuple(replace(handout, answer_pages=pages) for handout in handouts)

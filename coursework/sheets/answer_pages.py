@@ -169,12 +169,18 @@ def code_text(code: str, number: int, pages: int) -> str:
 
 
 def answer_pages(
-    variants: Sequence[Answerable], lang: str = "en", paper: str = "a4", code: str = ""
+    variants: Sequence[Answerable],
+    lang: str = "en",
+    paper: str = "a4",
+    code: str = "",
+    *,
+    alone: bool = False,
 ) -> tuple[AnswerPage, ...]:
     """Return the answer pages of one paper, whose exercises are these variants in order.
 
     ``lang`` is that of the units that are printed; it moves nothing. ``code`` is the paper's:
-    :func:`paper_code`.
+    :func:`paper_code`. The questions of an exercise that is handed out ``alone`` have no number before their
+    own.
 
     Raises
     ------
@@ -191,7 +197,7 @@ def answer_pages(
     for index, variant in enumerate(variants):
         if len(variants) > 1:
             sheets.head(index)
-        for block in _blocks(variant, index, lang, sheets.width, alone=len(variants) == 1):
+        for block in _blocks(variant, index, lang, sheets.width, alone=alone):
             sheets.add(block)
     return sheets.pages(code)
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import json
+import re
 from dataclasses import replace
 from itertools import product
 
@@ -269,6 +270,24 @@ def test_papers_of_an_assignment_are_known_again_with_and_without_names(tmp_path
     assert len(set(seen.values())) == 2, "a paper has one code in every language"
     for code in seen.values():
         assert [record["exercise"] for record in papers[code].records] == ["grashof", "two_circles"]
+
+
+@pytest.mark.parametrize("names", [["grashof"], ["grashof", "coriolis"], []], ids=["one", "two", "alone"])
+def test_an_answer_page_numbers_a_question_as_its_paper_does(tmp_path, course, names):
+    exam = tmp_path / "exam.toml"
+    exam.write_text("".join(f'[[exercises]]\nname = "{name}"\n' for name in names), "utf-8")
+    asked = [str(exam)] if names else ["grashof"]
+    usual = ["build", *asked, "--with", "scan,no-solutions", "--formats", "pdf", "--lang", "en"]
+    assert run([*usual, "--out", str(tmp_path / "out")]) == 0
+    paper = next(iter(answer_papers(json.loads((tmp_path / "out/issued.json").read_text("utf-8"))).values()))
+    [pdf] = (tmp_path / "out" / "handouts").rglob("*.pdf")
+    text = "".join(page.get_textpage().get_text_range() for page in pypdfium2.PdfDocument(pdf.read_bytes()))
+    statement, _, answers = text.partition("CW1")
+    fields = [field for page in paper.pages(course) for field in page.fields]
+    asked_for = list(dict.fromkeys(field.number for field in fields if field.number))
+    assert asked_for == re.findall(r"^((?:\d\.)?\d+)\. ", statement, re.MULTILINE)
+    assert not [number for number in asked_for if not re.search(rf"^{number}\s", answers, re.MULTILINE)]
+    assert len(asked_for) == sum(len(record["parts"]) for record in paper.records)
 
 
 def test_answer_pages_without_a_pdf_are_refused(tmp_path, capsys):
