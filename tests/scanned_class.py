@@ -19,6 +19,7 @@ from coursework.issuing.answer_papers import answer_papers
 from coursework.issuing.issued import issued_content
 from coursework.issuing.issuing import issue
 from coursework.issuing.roster import Student
+from coursework.parsing.scanned import names_pictures
 from coursework.scanning.page_reading import Papers
 from coursework.scanning.pages import FieldRead, PageRead
 from coursework.scanning.pictures import PageImage
@@ -224,7 +225,9 @@ def bytes_of(folder: Path) -> dict[str, bytes]:
 
 
 def answered(folder: Path, student: str) -> dict[str, str]:
-    return {row["part"]: row["answer"] for row in rows(folder / "answers.csv") if row["student"] == student}
+    """What is known of somebody's answers, without those that wait as pictures."""
+    own = [row for row in rows(folder / "answers.csv") if row["student"] == student]
+    return {row["part"]: row["answer"] for row in own if not names_pictures(row["answer"])}
 
 
 def queued(folder: Path) -> list[dict]:

@@ -165,6 +165,18 @@ def _sittings_query() -> CompoundSelect[Any]:
     )
 
 
+def counts(
+    connection: Connection, assignment_id: int, rows: Sequence[AnswerRow | Rejected | PlatformFile]
+) -> bool:
+    """Return True if a submission of a file with these rows was received, and no later one replaced it."""
+    found = select(delivery.c.id).where(
+        delivery.c.assignment_id == assignment_id,
+        delivery.c.digest == _digest(rows, None),
+        delivery.c.replaced.is_(None),
+    )
+    return connection.execute(found).first() is not None
+
+
 def submission_alike(connection: Connection, assignment_id: int, digest: str) -> Submission:
     """Return the submission with the given digest."""
     row = connection.execute(

@@ -59,6 +59,7 @@ from coursework.issuing.variant_assignment import with_points
 from coursework.language.words import languages, words
 from coursework.marking.mark import WAITING, Mark
 from coursework.messages import Message
+from coursework.parsing.scanned import names_pictures
 from coursework.parsing.spoken import refers_elsewhere, says_nothing
 from coursework.quantities.error_kinds import PENALTIES
 
@@ -334,6 +335,10 @@ class Exam:
         asked = self.course[exercise].spec.part(part)
         return asked is not None and asked.sort.is_number
 
+    def _is_open(self, exercise: str, part: str) -> bool:
+        asked = self.course[exercise].spec.part(part)
+        return asked is not None and asked.sort.is_open
+
     def count_of(self, wanted: Decision) -> int:
         """Return the number of answers to the question of a step that are written as it says."""
         lines = (g.lines.get(wanted.part) for g in self.machine if g.exercise == wanted.exercise)
@@ -349,12 +354,14 @@ class Exam:
         )
 
     def refusals(self, questions: Collection[Question]) -> list[Decision]:
-        """Return the steps that give no points to every answer that waits in some questions, as one batch."""
+        """Return the steps that give no points to every answer that waits in some questions, as one batch;
+        not to those on scans that nobody has read yet."""
         answers = dict.fromkeys(
             (group.exercise, group.part, one.mark.answer)
             for group, members in self.open
             for one in members
             if (group.exercise, group.part) in questions and one.mark.verdict in WAITING
+            if self._is_open(group.exercise, group.part) or not names_pictures(one.mark.answer)
         )
         return as_one(step(GIVEN, exercise, part, 0.0, answer) for exercise, part, answer in answers)
 

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 from coursework.model import Part
 from coursework.parsing.plain_values import plain_answer
 from coursework.parsing.reading import Reading
+from coursework.parsing.scanned import names_pictures
 from coursework.parsing.spoken import bare, refers_elsewhere, says_nothing
 
 if TYPE_CHECKING:
@@ -17,7 +18,9 @@ if TYPE_CHECKING:
 def read(variant: Variant, part: Part, answer: Any) -> Reading:
     """Read an answer as the part's kind asks; a vector has as many coordinates as its reference. Whatever
     it is, it is read, unreadable or missing: words that say that there is no answer are none, and those that
-    lead to one are left out."""
+    lead to one are left out. The pictures of an answer on a scanned page wait for a person."""
+    if isinstance(answer, str) and names_pictures(answer):
+        return Reading(answer, "to_mark")
     reading = part.sort.read(plain_answer(answer), part, variant)
     if reading.status != "unreadable":
         return reading

@@ -255,10 +255,10 @@ def _mark_part(
     before: EarlierAnswers,
 ) -> Mark:
     mark_of = partial(made_mark, variant, part, reading)
+    if reading.status == "to_mark" or (reading.status == "read" and part.sort.is_open):
+        return mark_of("to_mark", 0.0, "", say(variant, part, "to_mark"))
     if reading.status != "read":
         return mark_of(reading.status, 0.0, "", say_not_read(variant, part, reading))
-    if part.sort.is_open:
-        return mark_of("to_mark", 0.0, "", say(variant, part, "to_mark"))
     index, gap = nearest
     if gap > 1:
         return mark_wrong(variant, key, part, reading, judged_by, before)

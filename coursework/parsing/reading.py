@@ -18,7 +18,8 @@ from coursework.parsing.vocabulary import MAX_LENGTH, Unreadable
 class Reading:
     """Value, unit and notes that were read in one answer.
 
-    ``status``: ``read``, ``missing``, ``unreadable`` or ``wrong_unit``. ``values``: one or two honest
+    ``status``: ``read``, ``missing``, ``unreadable``, ``wrong_unit``, or ``to_mark`` for one that a person
+    reads from its picture. ``values``: one or two honest
     readings in the canonical unit (floats; integers; tuples of floats for a point; a key for a choice; an
     :class:`~coursework.parsing.equations.Equation`), empty unless read. ``read_as``: one echo a value, with a
     decimal point and the unit as written. When it is not read, ``code`` is a short key for the reason and

@@ -166,7 +166,9 @@ def points_text(points: float, lang: str) -> str:
 
 
 def points_number(points: float, lang: str) -> str:
-    return localise(plain(round(points, 3)), lang)
+    """Return points as they are printed: as stated, at most to a thousandth, else to a hundredth."""
+    stated = round(points, 3)
+    return localise(plain(stated if abs(points - stated) < 1e-9 else round(points, 2)), lang)
 
 
 def renumbered(text: str, lang: str, prefix: str) -> str:

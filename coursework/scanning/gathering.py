@@ -12,6 +12,7 @@ from itertools import islice, product
 from math import prod
 from typing import Any, NamedTuple, Protocol, TypeAlias
 
+from coursework.parsing.scanned import picture_of
 from coursework.scanning.digits import LIKELY
 from coursework.scanning.scan_store import ANSWERS, LOST, OTHER_NAME, PageScan, Scanned, ScannedField
 from coursework.scanning.typed import NAME, PAGE, Typed
@@ -105,7 +106,12 @@ class ScannedAnswer:
     answer: str
     pages: tuple[str, ...]  #: ids, of the scans that say it
     by_hand: bool = False
-    pictures: tuple[FieldReading, ...] = ()  #: of an answer that a person marks from its picture
+    pictures: tuple[FieldReading, ...] = ()  #: of an answer that a person reads or marks from its picture
+
+    @property
+    def text(self) -> str:
+        """Answer as it is marked: for one that is a picture, the file of the picture."""
+        return "; ".join(s.field.crop or picture_of(s.page) for s in self.pictures) or self.answer
 
 
 @dataclass(frozen=True)
@@ -115,6 +121,13 @@ class Pending:
     student: str
     part: Part
     pieces: tuple[AnswerCard | str, ...]
+
+    @property
+    def as_answer(self) -> ScannedAnswer:
+        """Pictures of what waits, which stand for the answer until somebody has typed it."""
+        said = tuple(r for piece in self.pieces if isinstance(piece, AnswerCard) for r in piece.said)
+        pages = tuple(sorted({reading.page for reading in said}))
+        return ScannedAnswer(self.student, *self.part, "", pages, pictures=said)
 
 
 @dataclass
@@ -132,6 +145,12 @@ class Gathered:
     confirmed: dict[str, int] = field(default_factory=dict)
     #: What was drawn on, by paper, exercise and seed.
     drawn: dict[tuple[str, str, int], FieldReading] = field(default_factory=dict)
+
+    @property
+    def to_mark(self) -> list[ScannedAnswer]:
+        """Answers for the marking: those of which nothing waits, and the pictures of those of which something
+        does, so that no mark counts them as left out."""
+        return [*self.answers, *(pending.as_answer for pending in self.pending)]
 
 
 Part: TypeAlias = tuple[str, int, str]  #: exercise, seed and id

@@ -18,6 +18,7 @@ from coursework.issuing.answer_papers import answer_papers
 from coursework.issuing.issued import Issued
 from coursework.issuing.questions import PaperQuestions
 from coursework.messages import Message, as_message
+from coursework.parsing.scanned import crop_of, picture_of
 from coursework.scanning.scan_store import (
     ANSWERS,
     BLANK,
@@ -28,10 +29,8 @@ from coursework.scanning.scan_store import (
     STATEMENT,
     PageScan,
     ScannedField,
-    crop_of,
     look_of,
     page_id,
-    picture_of,
     put_page,
 )
 from coursework.sheets.answer_pages import AnswerField, AnswerPage

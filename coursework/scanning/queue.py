@@ -15,11 +15,12 @@ from typing import TYPE_CHECKING, Any
 
 from coursework.issuing.issued import COLUMNS as ANSWER_COLUMNS
 from coursework.language.words import languages, words
+from coursework.parsing.scanned import picture_of
 from coursework.rendering.environment import render
 from coursework.rendering.html import environment_of
 from coursework.rendering.keeping import in_script
 from coursework.scanning.gathering import AnswerCard, Gathered, PrintedPaper
-from coursework.scanning.scan_store import ScannedField, picture_of
+from coursework.scanning.scan_store import ScannedField
 from coursework.scanning.typed import COLUMNS as TYPED_COLUMNS
 from coursework.scanning.typed import NAME, PAGE
 from coursework.system.tables import json_text
@@ -188,7 +189,7 @@ def page(queue: ScanQueue, content: Mapping[str, Any]) -> str:
         "words": {lang: words(lang, "scan") for lang in languages()},
         "typed_columns": TYPED_COLUMNS,
         "answer_columns": ANSWER_COLUMNS,
-        "answers": [[a.student, a.exercise, str(a.seed), a.part, a.answer] for a in queue.found.answers],
+        "answers": [[a.student, a.exercise, str(a.seed), a.part, a.text] for a in queue.found.answers],
         "joins": list(_joins(queue)),
         "places": list(_PLACES),
         "papers": list(_papers(queue)) if any(card["sort"] == "pages" for card in cards) else [],
@@ -257,4 +258,5 @@ def _joins(queue: ScanQueue) -> Iterator[dict[str, Any]]:
             "texts": [piece if isinstance(piece, str) else "" for piece in pending.pieces],
             "patterns": patterns,
             "unit": unit if len(places) > 1 else "",
+            "waiting": pending.as_answer.text,
         }

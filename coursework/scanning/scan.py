@@ -23,13 +23,13 @@ from coursework.errors import BadInput
 from coursework.issuing.answer_papers import AnswerPaper
 from coursework.issuing.issued import COLUMNS, Issued
 from coursework.messages import Message, localised
+from coursework.parsing.scanned import crop_of, picture_of
 from coursework.scanning.digits import CONFIDENT
 from coursework.scanning.gathering import (
     FieldPosition,
     Gathered,
     PrintedField,
     PrintedPaper,
-    ScannedAnswer,
     gather,
 )
 from coursework.scanning.page_reading import (
@@ -52,10 +52,8 @@ from coursework.scanning.scan_store import (
     Scanned,
     ScannedField,
     ScannedFile,
-    crop_of,
     joined,
     page_id,
-    picture_of,
     put_files,
     put_page,
     scanned,
@@ -357,21 +355,16 @@ def together(
 
 def _write_answers(table: TableFile, combined: Gathered, pages: Sequence[Scanned]) -> None:
     sources = _sources(pages)
-    for answer in sorted(combined.answers, key=lambda a: (a.student, a.exercise, a.seed)):
+    for answer in sorted(combined.to_mark, key=lambda a: (a.student, a.exercise, a.seed)):
         source = "; ".join(sources[name] for name in answer.pages)
         row = dict(
             zip(
                 COLUMNS,
-                (answer.student, answer.exercise, str(answer.seed), answer.part, answer_text(answer)),
+                (answer.student, answer.exercise, str(answer.seed), answer.part, answer.text),
                 strict=True,
             )
         )
         table.write({**row, "source": f"{source} (by hand)" if answer.by_hand else source})
-
-
-def answer_text(answer: ScannedAnswer) -> str:
-    """Return an answer as it is marked: for one marked from its picture, the place of the picture."""
-    return "; ".join(s.field.crop or picture_of(s.page) for s in answer.pictures) or answer.answer
 
 
 def _sources(pages: Sequence[Scanned]) -> dict[str, str]:

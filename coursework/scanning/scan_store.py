@@ -17,6 +17,7 @@ import numpy as np
 
 from coursework.errors import BadInput
 from coursework.messages import Message
+from coursework.parsing.scanned import picture_of
 from coursework.system.json_files import read_json
 from coursework.system.limits import MOST_PAGES
 from coursework.system.tables import json_text
@@ -25,7 +26,7 @@ from coursework.system.writing import write_whole
 _Stored = TypeVar("_Stored", "ScannedField", "PageScan", "ScannedFile")
 
 FORMAT = 1  #: of what is kept; another one is read anew
-FOLDER, PICTURES, CROPS, FILES = ".scanned", "pictures", "crops", "files.json"
+FOLDER, FILES = ".scanned", "files.json"
 SCALE = 8  #: pixels to the mm of a picture that is kept
 
 #: What a page is.
@@ -89,16 +90,6 @@ def put_page(out: Path, name: str, page: PageScan, pictures: Mapping[str, bytes]
     for file, data in pictures.items():
         write_whole(out / file, data)
     write_whole(out / FOLDER / f"{name}.json", json_text(page_as_json(page)).encode())
-
-
-def picture_of(name: str) -> str:
-    """Return the file of a page's picture, relative to the folder of the job."""
-    return f"{PICTURES}/{name}.jpg"
-
-
-def crop_of(name: str, index: int) -> str:
-    """Return the file of a field's picture, relative to the folder of the job."""
-    return f"{CROPS}/{name}-{index:02d}.png"
 
 
 def page_of(content: Mapping[str, Any]) -> PageScan | None:

@@ -283,9 +283,9 @@
   function answers() {
     const rows = data.answers.map((row) => row.slice()), of = (id) => state.get(id);
     for (const one of data.joins) {
-      if (!one.cards.every((id) => id === null || of(id).done)) continue;
+      const isTyped = one.cards.every((id) => id === null || of(id).done);
       const texts = one.cards.map((id, k) => (id === null ? one.texts[k] : of(id).text));
-      rows.push([...one.row, joined(one, texts)]);
+      rows.push([...one.row, isTyped ? joined(one, texts) : one.waiting]);
     }
     return rows;
   }

@@ -65,6 +65,29 @@ def test_what_is_sent_is_read_typed_and_marked(desk):
     assert found["theta4"][1] == 1
 
 
+def test_what_nobody_has_typed_yet_is_no_missing_answer_and_after_the_exam_says_so(desk):
+    """Marked early, or taken back later, it waits for a person and its mark is provisional."""
+
+    def state():
+        now = class_now(desk.site, desk.number)
+        [theta4] = [one.lines["theta4"] for one in now.graded.values() if one.student == "Ada"]
+        return theta4.verdict, now.results["Ada"].open, "typed: 1" in desk.page(TEACHER, "/after").text
+
+    send(desk, ("ada.png", picture(desk, "Ada", rA=desk.at_margin("rA", 0), theta4="~104.6")))
+    after = desk.page(TEACHER, "/after").text
+    assert "to be typed: 1" in after
+    assert "not everything read on scans is marked yet" in after.lower()
+    fill(desk, "", do="hand over")
+    assert state() == ("to_mark", 1, True)
+    assert "is marked yet" not in desk.page(TEACHER, "/after").text
+    card = desk.page(TEACHER, "/scans/queue")
+    fill(desk, "/queue", card=field(card, "card"), do="confirm", answer=desk.at_margin("theta4", 0) + "°")
+    assert state() == ("correct", 0, False)
+    fill(desk, "/queue", do="undo")
+    assert state() == ("to_mark", 1, True)
+    assert "is marked yet" not in desk.page(TEACHER, "/after").text
+
+
 def test_an_answer_that_is_typed_anew_takes_the_place_of_the_one_before(desk):
     send(desk, ("a.png", picture(desk, "Ada", rA="1")))
     assert "sent to be marked" in told(fill(desk, "", do="hand over"))

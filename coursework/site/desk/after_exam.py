@@ -36,6 +36,7 @@ from coursework.language.numbers import localise, typed_number
 from coursework.language.words import words
 from coursework.messages import localised
 from coursework.site.desk.class_cache import class_here, class_now, class_page_of
+from coursework.site.desk.class_scans import class_scans, is_handed_over
 from coursework.site.desk.question_cards import moment
 from coursework.site.frame.budgets import DESK_FILE
 from coursework.site.frame.requests import Request, Route
@@ -269,9 +270,20 @@ def _page(request: Request, now: ClassState, fields: Mapping[str, str], message:
         "on_questions": [kind for kind in OFFERED if kind not in OF_NO_QUESTION],
         "ids": [one.id for one, _ in batches],
         "most_rows": _MOST_ROWS,
+        "scans": _scans_left(request, now),
         "most": max((*current.counts, *(preview.now.counts if preview else ())), default=0),
     }
     return class_page_of(request, now, "site/instructor/after", "after", **names)
+
+
+def _scans_left(request: Request, now: ClassState) -> tuple[int, bool]:
+    """Return the number of answers on scans that somebody must type, and True if some that are known are not
+    marked yet."""
+    number = now.about.id
+    if not request.user.may(Permission.SCANS_READ, number):
+        return 0, False
+    scans = class_scans(request.site, number)
+    return len(scans.cards), bool(scans.pages) and not is_handed_over(request.site, number, scans)
 
 
 def _errors(exam: Exam, lang: str) -> list[tuple[str, str, int]]:

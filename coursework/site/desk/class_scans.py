@@ -3,7 +3,7 @@ submission."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -12,9 +12,10 @@ from typing import Any
 from coursework.database.assignments import issued_content
 from coursework.database.marking import mark_new
 from coursework.database.scans import pages_scanned, typed_texts
-from coursework.database.submissions import insert_submission
+from coursework.database.submissions import counts, insert_submission
 from coursework.gradebook.rows import AnswerRow
 from coursework.messages import Message, localised
+from coursework.parsing.scanned import scan_reference
 from coursework.scanning.gathering import AnswerCard, Gathered, ScannedAnswer
 from coursework.scanning.page_reading import Papers
 from coursework.scanning.parts import Joins
@@ -81,7 +82,29 @@ class ClassScans:
     @property
     def answers(self) -> list[ScannedAnswer]:
         """Answers on papers whose student is known."""
-        return [answer for answer in self.gathered.answers if answer.student not in self.papers.papers]
+        return self._of_students(self.gathered.answers)
+
+    @property
+    def rows(self) -> list[AnswerRow]:
+        """Rows of a submission: the answers, and references to the pictures of those that wait."""
+        return [
+            AnswerRow(
+                answer.student,
+                answer.exercise,
+                str(answer.seed),
+                answer.part,
+                "; ".join(scan_reference(s.page, s.index) for s in answer.pictures) or answer.answer,
+                self._source(answer),
+            )
+            for answer in self._of_students(self.gathered.to_mark)
+        ]
+
+    def _of_students(self, answers: Iterable[ScannedAnswer]) -> list[ScannedAnswer]:
+        return [answer for answer in answers if answer.student not in self.papers.papers]
+
+    def _source(self, answer: ScannedAnswer) -> str:
+        there = (self.by_id[name] for name in answer.pages if name in self.by_id)
+        return "; ".join(f"{page.file.name} p. {page.number}" for page in there)
 
     @cached_property
     def by_id(self) -> dict[str, Scanned]:
@@ -125,37 +148,24 @@ def _stamp(content: dict[str, Any]) -> int:
 
 
 def hand_over(site: Site, number: int, now: ClassScans) -> int:
-    """Submit and mark the answers read so far, in place of those of earlier scans; return their number."""
-    rows = [
-        AnswerRow(
-            answer.student,
-            answer.exercise,
-            str(answer.seed),
-            answer.part,
-            answer_reference(answer),
-            _source(now, answer),
-        )
-        for answer in now.answers
-    ]
+    """Submit and mark the answers read so far, in place of those of earlier scans; return their number.
+
+    Answers that wait are submitted as their pictures: they wait for a person, and marks are provisional.
+    """
+    rows = now.rows
     if not rows:
         return 0
     with site.store.begin() as connection:
         insert_submission(connection, number, rows, source=SOURCE, received_at=site.clock(), replaces=True)
     mark_new(site.course, site.store, number)
-    return len(rows)
+    return len(now.answers)
 
 
-def answer_reference(answer: ScannedAnswer) -> str:
-    """Return the text of an answer; for one that is marked from its picture, a reference to the picture."""
-    return "; ".join(f"scan {s.page}/{s.index}" for s in answer.pictures) or answer.answer
-
-
-def _source(now: ClassScans, answer: ScannedAnswer) -> str:
-    return "; ".join(
-        f"{now.by_id[name].file.name} p. {now.by_id[name].number}"
-        for name in answer.pages
-        if name in now.by_id
-    )
+def is_handed_over(site: Site, number: int, now: ClassScans) -> bool:
+    """Return True if what is read so far is what the last submission of scans states, or nothing is."""
+    rows = now.rows
+    with site.store.reading() as connection:
+        return not rows or counts(connection, number, rows)
 
 
 __all__ = ["ANSWERS", "LOST", "SOURCE", "ClassScans", "class_scans", "hand_over"]

@@ -3,7 +3,6 @@ or tap."""
 
 from __future__ import annotations
 
-import re
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -32,6 +31,7 @@ from coursework.gradebook.waiting import (
     written,
 )
 from coursework.language.numbers import localise, significant
+from coursework.parsing.scanned import scan_references
 from coursework.rendering.surface import drawn_figure, kind_of_surface
 from coursework.site.desk.class_cache import class_here, class_page_of
 from coursework.site.desk.question_cards import (
@@ -46,7 +46,6 @@ from coursework.site.frame.requests import Request, Route
 
 REJECTED = "rejected"
 LONGEST = 2000  #: characters of a comment
-_SCAN = re.compile(r"scan ([0-9a-f]{16}-\d{4,6})/(\d{1,4})")  #: an answer that is a picture
 
 
 @dataclass(frozen=True)
@@ -137,8 +136,7 @@ class QueueCard:
     @property
     def scans(self) -> tuple[tuple[str, str], ...]:
         """Page and field of the pictures of an answer on paper."""
-        matches = [_SCAN.fullmatch(piece) for piece in str(self.first.mark.answer).split("; ")]
-        return tuple((piece[1], piece[2]) for piece in matches if piece)
+        return scan_references(str(self.first.mark.answer))
 
 
 def card_of(request: Request, now: ClassState, item: QueueItem) -> QueueCard:

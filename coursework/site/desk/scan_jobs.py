@@ -14,9 +14,10 @@ from coursework.course.variant import Variant
 from coursework.database.assignments import issued_content
 from coursework.database.audit import note
 from coursework.database.scans import ScannedPage, put_scanned
+from coursework.parsing.scanned import picture_of
 from coursework.scanning.page_reading import Papers
 from coursework.scanning.scan import read_files
-from coursework.scanning.scan_store import REFUSED, PageScan, page_as_json, page_id, picture_of, stored_page
+from coursework.scanning.scan_store import REFUSED, PageScan, page_as_json, page_id, stored_page
 from coursework.site.frame import jobs
 from coursework.site.frame.jobs import Job
 from coursework.site.frame.settings import Site

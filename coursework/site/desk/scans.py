@@ -23,7 +23,7 @@ from coursework.scanning.sources import ENDINGS
 from coursework.scanning.typed import NAME, PAGE, Typed
 from coursework.site.desk import scan_jobs
 from coursework.site.desk.class_cache import class_here, class_now, class_page_of
-from coursework.site.desk.class_scans import ClassScans, class_scans, hand_over
+from coursework.site.desk.class_scans import ClassScans, class_scans, hand_over, is_handed_over
 from coursework.site.desk.files import file_name
 from coursework.site.frame.budgets import DESK_FILES
 from coursework.site.frame.requests import HTTPException, Request, Route, Upload
@@ -65,6 +65,7 @@ def scans_page(request: Request, message: str = "") -> Response:
         told=message,
         job=job,
         scans=scans,
+        is_marked=is_handed_over(request.site, now.about.id, scans),
         endings=",".join((*ENDINGS, ".zip")),
         absent=absent if scans.pages else [],
     )
@@ -140,8 +141,10 @@ def cards_page(request: Request) -> Response:
 
 
 def _undone(request: Request, now: ClassState) -> Response:
-    """Withdraw what the person typed last; return the first of its cards."""
-    waited = {card.id for card in class_scans(request.site, now.about.id).cards}
+    """Withdraw what the person typed last, also from what was submitted; return the first of its cards."""
+    before = class_scans(request.site, now.about.id)
+    waited = {card.id for card in before.cards}
+    is_marked = is_handed_over(request.site, now.about.id, before)
     with request.site.store.begin() as connection:
         texts = last_typed(connection, now.about.id, request.actor.name)
         if texts:
@@ -149,6 +152,8 @@ def _undone(request: Request, now: ClassState) -> Response:
             request.note(connection, "scan typed undone", assignment=now.about.id, texts=len(texts))
     said, later = request.words["queue"], class_scans(request.site, now.about.id)
     message = said["undone"].format(len(texts)) if texts else said["nothing_to_undo"]
+    if texts and is_marked:
+        hand_over(request.site, now.about.id, later)
     at = next((card.id for card in later.cards if card.id not in waited), "")
     return _card_response(request, class_now(request.site, now.about.id), later, at, message)
 
