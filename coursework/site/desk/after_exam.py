@@ -6,7 +6,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 from starlette.responses import Response
 
@@ -51,6 +51,14 @@ _FIELDS = ("kind", "question", "points", "answer", "error", "why", "source")
 _MOST_SOURCE = 200_000  #: characters of a file of an assignment
 _MOST_ROWS = 400  #: changed marks in the table
 _MOST_IDS = 1000  #: decisions undone at once
+
+
+class ScansLeft(NamedTuple):
+    """Work that is left on the scans of a class."""
+
+    cards: int  #: answers that somebody must type
+    incomplete: int  #: papers of which a page was not scanned
+    is_unmarked: bool  #: True if some that are known are not marked yet
 
 
 def exam_of(now: ClassState) -> Exam:
@@ -276,14 +284,14 @@ def _page(request: Request, now: ClassState, fields: Mapping[str, str], message:
     return class_page_of(request, now, "site/instructor/after", "after", **names)
 
 
-def _scans_left(request: Request, now: ClassState) -> tuple[int, bool]:
-    """Return the number of answers on scans that somebody must type, and True if some that are known are not
-    marked yet."""
+def _scans_left(request: Request, now: ClassState) -> ScansLeft:
+    """Return the work that is left on scans, as far as the user may see them."""
     number = now.about.id
     if not request.user.may(Permission.SCANS_READ, number):
-        return 0, False
+        return ScansLeft(0, 0, False)
     scans = class_scans(request.site, number)
-    return len(scans.cards), bool(scans.pages) and not is_handed_over(request.site, number, scans)
+    is_unmarked = not is_handed_over(request.site, number, scans)
+    return ScansLeft(len(scans.cards), len(scans.gathered.missing), is_unmarked)
 
 
 def _errors(exam: Exam, lang: str) -> list[tuple[str, str, int]]:
