@@ -329,9 +329,11 @@ class Typist(Draughtsman):
 
     def stand(self, selector):
         """Go to a control by the keys, as far as it is one's turn."""
-        tools = ".surface-tools button"
-        is_tool = self.page.locator(selector).first.evaluate("(n, tools) => n.matches(tools)", tools)
-        goal = tools if is_tool else selector
+        bar = self.page.locator(selector).first.evaluate(
+            "n => (n.closest('[role=toolbar]') || { ariaLabel: '' }).ariaLabel"
+        )
+        tools = f'[role=toolbar][aria-label="{bar}"] button'
+        goal = tools if bar else selector
         for _ in range(80):
             if self._stands_on(goal):
                 break
@@ -339,7 +341,7 @@ class Typist(Draughtsman):
                 "n => !!(document.activeElement.compareDocumentPosition(n) & 2)"
             )
             self.key("Shift+Tab" if before else "Tab")
-        if is_tool:
+        if bar:
             ahead = self.page.locator(selector).first.evaluate(
                 "(n, tools) => { const all = [...document.querySelectorAll(tools)];"
                 " return all.indexOf(n) - all.indexOf(document.activeElement); }",

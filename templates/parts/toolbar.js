@@ -1,9 +1,10 @@
-// A toolbar is one stop of the keyboard, at the chosen tool; arrow keys, Home and End move inside.
+// A toolbar is one stop of the keyboard, at the chosen tool or the first name that is not placed yet; arrow keys, Home and
+// End move inside.
 document.querySelectorAll("[role=toolbar]").forEach(bar => {
   "use strict";
   const tools = [...bar.querySelectorAll("button")];
   function settle() {
-    const stop = tools.find(one => one === document.activeElement) || tools.find(one => one.matches("[data-tool][aria-pressed=true]")) || tools[0];
+    const stop = tools.find(one => one === document.activeElement) || tools.find(one => one.matches("[data-tool][aria-pressed=true], [data-name]:not(.placed)")) || tools[0];
     for (const one of tools) one.tabIndex = one === stop ? 0 : -1;
   }
   bar.addEventListener("keydown", e => {
