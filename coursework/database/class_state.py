@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cache, cached_property, partial
 from hashlib import sha256
@@ -12,6 +12,7 @@ from coursework.course.course import Course
 from coursework.database.coded import by_code, coded_graded, coded_row, coded_sheets, codes_of
 from coursework.database.instructor_queries import AssignmentOverview, Placing, SiteSubmissions, Stamp
 from coursework.errors import closest
+from coursework.gradebook.after import Exam
 from coursework.gradebook.book import Gradebook, Result, Sitting, results
 from coursework.gradebook.class_marking import rejecting
 from coursework.gradebook.decisions import Decisions
@@ -25,10 +26,7 @@ from coursework.gradebook.waiting import (
     Measure,
     OpenGroup,
     SheetOfStudent,
-    groups,
-    margins_of,
     sheet_of_student,
-    undecided,
 )
 from coursework.issuing.issued import Issued
 from coursework.issuing.questions import PaperQuestions
@@ -129,7 +127,7 @@ class ClassState:
             is_whole=False,
         )
         # Adjustments are of the whole class, and names stay hidden until nothing of the whole class waits.
-        part.__dict__["graded"] = of_them(self.graded)
+        part.exam.__dict__["adjusted"] = [*of_them(self.graded).values()]
         part.__dict__["adjusted"] = self.adjusted.among(students)
         part.__dict__["codes"] = {name: code for name, code in self.codes.items() if name in students}
         return part
@@ -153,7 +151,7 @@ class ClassState:
         graded = by_code(self.graded, codes)
         part.__dict__["graded"] = {key: coded_graded(one, codes) for key, one in graded.items()}
         part.__dict__["adjusted"], part.__dict__["open"] = self.adjusted.by_codes(codes), self.open
-        part.__dict__["codes"], part.__dict__["coded"] = codes, part
+        part.__dict__["codes"], part.__dict__["coded"], part.__dict__["exam"] = codes, part, self.exam
         part.__dict__["rejected"] = tuple(
             replace(
                 one,
@@ -171,13 +169,25 @@ class ClassState:
         return self.sheets.sheets.keys() <= self.machine.keys() | self.faults.keys()
 
     @cached_property
+    def exam(self) -> Exam:
+        """Marks and waiting answers, as those of any marked exam."""
+        waiting = tuple(row.row for row in self.rejected if row.waits)
+        return Exam(
+            self.course,
+            self.issued,
+            tuple(self.machine.values()),
+            self.decisions,
+            waiting,
+            self.charged,
+            self.measures,
+            self.presence,
+            self.shown,
+        )
+
+    @cached_property
     def graded(self) -> dict[SheetKey, Graded]:
         """Current sheets, with the decisions and adjustments applied."""
-        decided = {sheet: self.decisions.apply(graded) for sheet, graded in self.machine.items()}
-        if not (adjustments := self.decisions.adjustments):
-            return decided
-        margins = margins_of(self.course, self.issued)
-        return dict(zip(decided, adjustments.applied(decided.values(), self.issued, margins), strict=True))
+        return dict(zip(self.machine, self.exam.adjusted, strict=True))
 
     @cached_property
     def adjusted(self) -> Issued:
@@ -208,52 +218,17 @@ class ClassState:
         """Result of each student, of the attempt that counts."""
         return dict(results(self.book))
 
-    @cached_property
-    def last_sitting(self) -> dict[str, int]:
-        last: dict[str, int] = {}
-        for graded in self.machine.values():
-            last[graded.student] = max(last.get(graded.student, 0), graded.sitting)
-        return last
-
-    @cached_property
-    def one_sitting(self) -> bool:
-        """True if no student has several attempts."""
-        sittings: dict[str, int] = {}
-        return all(
-            sittings.setdefault(graded.student, graded.sitting) == graded.sitting
-            for graded in self.machine.values()
-        )
-
-    def matters(self, graded: Graded) -> bool:
-        """Return True if a sheet belongs to the attempt that counts, or to the last one."""
-        if self.one_sitting:
-            return True
-        return graded.sitting in (self.results[graded.student].sitting, self.last_sitting[graded.student])
-
-    # ----------------------------------------------------------------- questions
-
-    @cached_property
+    @property
     def questions(self) -> PaperQuestions:
         """Questions of the papers, with their numbers."""
-        return PaperQuestions.of(self.course, self.issued, on_papers=True)
+        return self.exam.questions
 
     # ------------------------------------------------------------------- waiting
 
     @property
     def groups(self) -> list[AnswerGroup]:
         """Groups of answers that a person may review, decided or not."""
-        return self._groups_of_all if self.one_sitting else self._groups_that_matter
-
-    @cached_property
-    def _groups_of_all(self) -> list[AnswerGroup]:
-        return self._grouped(self.machine.values())
-
-    @cached_property
-    def _groups_that_matter(self) -> list[AnswerGroup]:
-        return self._grouped(graded for graded in self.machine.values() if self.matters(graded))
-
-    def _grouped(self, sheets: Iterable[Graded]) -> list[AnswerGroup]:
-        return groups(sheets, self.measures, self.questions, self.course)
+        return self.exam.groups
 
     @cached_property
     def measures(self) -> dict[SheetOfStudent, Measure]:
@@ -267,8 +242,7 @@ class ClassState:
     @cached_property
     def open(self) -> dict[str, OpenGroup]:
         """Groups with undecided answers, by id, in order; including those that are shown only on request."""
-        current = {sheet_of_student(graded): graded for graded in self.graded.values()}
-        return {one.group.id: one for one in undecided(self.groups, self.decisions, current)}
+        return {one.group.id: one for one in self.exam.undecided}
 
     @property
     def waiting(self) -> int:

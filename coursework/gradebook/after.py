@@ -40,6 +40,7 @@ from coursework.gradebook.statistics.measures import ENOUGH, WEAK, PartStatistic
 from coursework.gradebook.statistics.of_class import marks_of_class
 from coursework.gradebook.waiting import (
     SHOWN_ON_REQUEST,
+    AnswerGroup,
     AnswerToReview,
     Measure,
     OpenGroup,
@@ -303,11 +304,39 @@ class Exam:
         return found
 
     @cached_property
-    def open(self) -> list[OpenGroup]:
+    def last_sitting(self) -> dict[str, int]:
+        """Last attempt of each student."""
+        last: dict[str, int] = {}
+        for graded in self.machine:
+            last[graded.student] = max(last.get(graded.student, 0), graded.sitting)
+        return last
+
+    @cached_property
+    def one_sitting(self) -> bool:
+        """True if no student has several attempts."""
+        return all(graded.sitting == self.last_sitting[graded.student] for graded in self.machine)
+
+    def _matters(self, graded: Graded) -> bool:
+        """Return True if a sheet belongs to the attempt that counts, or to the last one."""
+        student = graded.student
+        return graded.sitting in (self.results()[student].sitting, self.last_sitting[student])
+
+    @cached_property
+    def groups(self) -> list[AnswerGroup]:
+        """Groups of answers that a person may review, decided or not."""
+        sheets = self.machine if self.one_sitting else filter(self._matters, self.machine)
+        return groups(sheets, self.measures, self.questions, self.course)
+
+    @cached_property
+    def undecided(self) -> list[OpenGroup]:
         """Groups of answers to review, each with those of its answers on which nobody has decided."""
-        found = groups(self.machine, self.measures, self.questions, self.course)
         current = {sheet_of_student(graded): graded for graded in self.adjusted}
-        return [one for one in undecided(found, self.decisions, current) if one.why not in SHOWN_ON_REQUEST]
+        return [*undecided(self.groups, self.decisions, current)]
+
+    @cached_property
+    def open(self) -> list[OpenGroup]:
+        """Groups with undecided answers that wait, without those that are shown only on request."""
+        return [one for one in self.undecided if one.why not in SHOWN_ON_REQUEST]
 
     @cached_property
     def cards(self) -> dict[str, tuple[int, int]]:

@@ -153,7 +153,7 @@ def test_what_a_wider_margin_makes_right_waits_no_more(tmp_path):
 
     def waiting():
         now = class_now(desk.site, desk.number)
-        on_page = after_exam.exam_of(now).open
+        on_page = now.exam.open
         assert [members for _, members in on_page] == [found.members for found in now.open.values()]
         return {answer.student for found in now.open.values() for answer in found.members}
 
@@ -163,6 +163,18 @@ def test_what_a_wider_margin_makes_right_waits_no_more(tmp_path):
     assert waiting() == {"Bo"}
     desk.browser(TEACHER).fill(f"/desk/{desk.number}/after", {"do": "undo", "undo": steps_of(desk)[0].id})
     assert waiting() == {"Ada", "Bo"}
+
+
+def test_an_attempt_that_neither_counts_nor_is_the_last_waits_for_nobody(tmp_path):
+    desk = DeskClass(f"sqlite:///{tmp_path}/desk.db", {})
+    right = {"rA": desk.at_margin("rA", 0)}
+    for sitting, written in enumerate(({"rA": "trop court"}, right, {"theta4": "1°"}), 1):
+        desk.hand_in({"Ada": written}, sitting=sitting)
+    assert class_now(desk.site, desk.number).waiting == 0
+    assert "Nothing waits for anybody." in desk.page(TEACHER, "/after").text
+    desk.hand_in({"Ada": {"rA": "too short"}}, sitting=4)
+    assert class_now(desk.site, desk.number).waiting == 1
+    assert "(cards: 1, answers: 1)" in desk.page(TEACHER, "/after").text
 
 
 def test_a_scale_gives_marks_to_an_assignment_that_stated_none(desk):

@@ -148,7 +148,7 @@ def test_a_zip_of_answers_is_read_and_one_that_is_a_bomb_is_refused(desk):
         return made.getvalue()
 
     send(desk, "answers", "answers", "all.zip", zipped(**{"a__ed.csv": data}))
-    assert "Ed" in class_now(desk.site, desk.number).last_sitting
+    assert "Ed" in class_now(desk.site, desk.number).exam.last_sitting
     bomb = send(desk, "answers", "answers", "bomb.zip", zipped(**{"a.csv": b"0" * (60 * 1024 * 1024)}))
     assert (bomb.status_code, "more than the limit" in bomb.text) == (422, True)
     outside = send(desk, "answers", "answers", "out.zip", zipped(**{"..__..__out.csv": data}))
@@ -233,7 +233,7 @@ def test_what_was_erased_is_shown_as_nobody_elses(tmp_path):
 def test_a_file_of_a_long_name_is_read(desk):
     data = f"student,exercise,seed,part,answer\nDi,{EXERCISE},{SEED},rA,5\n"
     send(desk, "answers", "answers", "答" * 200 + ".csv", data)
-    assert "Di" in class_now(desk.site, desk.number).last_sitting
+    assert "Di" in class_now(desk.site, desk.number).exam.last_sitting
 
 
 def test_a_question_is_shown_as_it_was_asked_in_each_assignment(desk):

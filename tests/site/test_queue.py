@@ -22,7 +22,6 @@ from coursework.issuing.wide_form import wide_form
 from coursework.rendering.renderer import renderer_of
 from coursework.scanning.page_reading import Papers
 from coursework.sheets.paper import Paper, PaperHeading
-from coursework.site.desk import after_exam
 from coursework.site.desk.class_cache import class_now
 from coursework.site.desk.question_page import statistics_of
 from coursework.site.papers.student_paper import StudentPaper
@@ -154,7 +153,7 @@ def test_a_question_has_its_number_on_the_papers_everywhere(tmp_path):
     listed = re.findall(r'exercise=(\w+)&amp;part=(\w+)">([0-9./]+) ', queue)
     assert listed
     assert all(numbers[exercise, part] == text for exercise, part, text in listed)
-    exam = after_exam.exam_of(now)
+    exam = now.exam
     assert {row.number for row in exam.table} == {*numbers.values()}
     assert exam.called("1.3") == [(EXERCISE, "guide"), (EXERCISE, "swing")]
     changed = {"kind": "bonus", "question": f"{EXERCISE}/guide"}

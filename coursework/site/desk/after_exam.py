@@ -61,23 +61,6 @@ class ScansLeft(NamedTuple):
     is_unmarked: bool  #: True if some that are known are not marked yet
 
 
-def exam_of(now: ClassState) -> Exam:
-    """Return the exam of a class."""
-    rejected = tuple(row.row for row in now.rejected if row.waits)
-    machine = tuple(now.machine.values())
-    return Exam(
-        now.course,
-        now.issued,
-        machine,
-        now.decisions,
-        rejected,
-        now.charged,
-        now.measures,
-        now.presence,
-        now.shown,
-    )
-
-
 def after_exam(request: Request) -> Response:
     """Return the page; with a change in the address its preview; a form confirms it, puts non-answers away,
     or takes the last step back."""
@@ -89,7 +72,7 @@ def after_exam(request: Request) -> Response:
     if request.form.text("do") == "compare":
         return _page(request, now, fields | {"kind": FILE, "source": _source_sent(request)})
     try:
-        message = _done(request, now, exam_of(now))
+        message = _done(request, now, now.exam)
     except BadInput as fault:
         message = localised(fault)
         fields |= {name: request.form.text(name) for name in _FIELDS}
@@ -215,7 +198,7 @@ def _steps(request: Request, now: ClassState, exam: Exam, fields: Mapping[str, s
 
 
 def _page(request: Request, now: ClassState, fields: Mapping[str, str], message: str = "") -> Response:
-    exam, lang = exam_of(now), request.lang
+    exam, lang = now.exam, request.lang
     preview: Preview | None = None
     texts: list[str] = []
     written_so = None

@@ -4,7 +4,7 @@ ones."""
 from __future__ import annotations
 
 from collections import OrderedDict
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field, replace
 from datetime import timedelta
 from functools import cache, partial
@@ -136,7 +136,11 @@ def _read(
         now = replace(
             before, about=about, stamp=at, decisions=decisions, placings=placed_by_hand, charged=charged
         )
-        now.__dict__.update({k: before.__dict__[k] for k in _LASTING if k in before.__dict__})
+        _carry(before.__dict__, now.__dict__, _LASTING)
+        if "exam" in before.__dict__:
+            _carry(before.exam.__dict__, now.exam.__dict__, _LASTING_OF_EXAM)
+            if before.exam.one_sitting:
+                _carry(before.exam.__dict__, now.exam.__dict__, ("groups",))
         return now
     is_issued = before is not None and _issued_at(before.stamp, before.about) == _issued_at(at, about)
     issued = before.issued if before is not None and is_issued else issued_of(connection, about.id)
@@ -180,8 +184,12 @@ def _issued_at(at: Stamp, about: AssignmentOverview) -> tuple[Any, ...]:
     return at.dealt, about.columns, about.stated
 
 
-#: Cached properties that decisions do not change.
-_LASTING = ("questions", "drawn", "last_sitting", "one_sitting", "_groups_of_all", "unplaced")
+#: Cached properties that decisions do not change; of the groups, where no student has several attempts.
+_LASTING, _LASTING_OF_EXAM = ("drawn", "unplaced"), ("questions", "last_sitting", "one_sitting")
+
+
+def _carry(before: dict[str, Any], now: dict[str, Any], names: Iterable[str]) -> None:
+    now.update({name: before[name] for name in names if name in before})
 
 
 def _measured(
