@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import datetime
 import re
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -25,7 +25,6 @@ from coursework.language.numbers import localise, plain
 from coursework.language.words import words
 from coursework.sheets.paper import Paper, PaperHeading, SolutionPaper
 
-Rendering = Callable[[Any], str | bytes | None]
 _DIGITS = 18  #: of a number by which a booklet is sorted; a longer one is sorted as a word
 
 

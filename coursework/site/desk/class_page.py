@@ -18,8 +18,6 @@ from coursework.site.frame.paging import page_of
 from coursework.site.frame.requests import Request, Route
 from coursework.site.frame.responses import redirect
 
-SORTS = ("name", "total", "waits", "late", "tries")
-
 # ------------------------------------------------------------------------- pages
 
 
