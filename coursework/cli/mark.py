@@ -484,19 +484,16 @@ def _tell_alike(folder: Path, out: Path, decimal: str) -> None:
 
 def _write_report(course: Course, folder: Path, measures: Any, lang: str, out: Path, decimal: str) -> None:
     """Everything is made before the first file is written."""
-    from coursework.gradebook.class_points import issued_near
+    from coursework.gradebook.marks_record import read_record
     from coursework.gradebook.statistics import measures as statistics
     from coursework.gradebook.statistics import page as statistics_page
-    from coursework.issuing.issued import Issued
-    from coursework.issuing.questions import PaperQuestions
     from coursework.rendering.renderer import renderer_of
     from coursework.system.processes import Task, in_turn, is_shared
     from coursework.system.tables import SPREADSHEETS, csv_file
     from coursework.system.writing import write_whole
 
-    content = issued_near(folder / "marks.csv")
-    questions = PaperQuestions.of(course, Issued(content, "issued.json")) if content else None
-    page = statistics_page.report(course, measures, lang, questions)
+    record = read_record(folder)
+    page = statistics_page.report(course, measures, lang, record and record.questions)
     renderer = renderer_of(course.folder)
     spreadsheet = SPREADSHEETS[decimal]
     mistakes = statistics_page.mistake_rows(course, measures, lang)

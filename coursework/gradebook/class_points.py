@@ -3,20 +3,19 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from fractions import Fraction
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 from coursework.errors import BadInput, nearest
 from coursework.gradebook.changes import rows_of
 from coursework.gradebook.columns import LATE, PRESENCE, PROVISIONAL, VERDICTS
+from coursework.gradebook.marks_record import read_record
 from coursework.gradebook.presence import PRESENT
 from coursework.gradebook.scale import exact
 from coursework.issuing.identity import Ids, identifies
-from coursework.issuing.issued import codes_shown
 from coursework.language.numbers import typed_number
-from coursework.system.json_files import read_json
 from coursework.system.links import check_inside
 
 SCORES = ("points", "mark", "percent")
@@ -65,7 +64,7 @@ def class_points(marks: Path, score: str) -> list[Scored]:
         check_inside(path, marks)
     if not path.is_file():
         raise BadInput("no {file}: name the folder of marks that 'coursework grade' wrote", file=path)
-    if codes_shown(issued_near(path) or {}):
+    if (record := read_record(path.parent)) and record.by_codes:
         raise BadInput(
             "{file}: students go by codes; 'coursework grade … --names' puts names in place of them "
             "once nothing waits",
@@ -75,13 +74,6 @@ def class_points(marks: Path, score: str) -> list[Scored]:
     if not scored:
         raise BadInput("{file} has no student", file=path)
     return scored
-
-
-def issued_near(path: Path) -> Mapping[str, Any] | None:
-    """Return the ``issued.json`` beside the folder of a ``summary.csv``; None if there is none."""
-    issued = path.resolve().parent.parent / "issued.json"
-    content = read_json(issued) if issued.is_file() else None
-    return content if isinstance(content, Mapping) else None
 
 
 def _scored(path: Path, score: str) -> Iterator[Scored]:

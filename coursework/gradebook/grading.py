@@ -32,6 +32,7 @@ from coursework.gradebook.edited_marks import EditedMarks, differs
 from coursework.gradebook.feedback_form import USUAL, FeedbackForm, shows_solutions
 from coursework.gradebook.feedback_sheets import renew_feedback
 from coursework.gradebook.graded_sheet import Graded
+from coursework.gradebook.marks_record import write_record
 from coursework.gradebook.placing import Sheets
 from coursework.gradebook.platform_files import platform_file_lines
 from coursework.gradebook.presence import presence_by_student
@@ -40,6 +41,7 @@ from coursework.gradebook.sheets_on_disk import placed_on_disk
 from coursework.gradebook.submissions import find, read_file
 from coursework.gradebook.waiting import margins_of
 from coursework.issuing.issued import Issued
+from coursework.issuing.questions import PaperQuestions
 from coursework.messages import Message
 from coursework.system.build_folder import free_name, is_as_written, write_down
 from coursework.system.tables import SPREADSHEETS, Spreadsheet
@@ -184,6 +186,7 @@ def write_marks(
         write_down(out / _WRITTEN, marks.path, marks.part, *([] if edited else [marks.path]))
         tables.commit()
     _remove_earlier_files(out)
+    write_record(out, book, PaperQuestions.of(course, issued))
     return book
 
 
@@ -271,6 +274,7 @@ def grade_edited_marks(
     _remove_earlier_files(out)
     if marks.resolve() != (out / "marks.csv").resolve():
         write_whole(out / "marks.csv", marks.read_bytes())
+    write_record(out, book, PaperQuestions.of(course, issued))
     return book
 
 

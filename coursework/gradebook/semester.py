@@ -12,7 +12,8 @@ from typing import Any, NamedTuple
 
 from coursework.errors import BadInput, bare_letters
 from coursework.gradebook.changes import rows_of
-from coursework.gradebook.class_points import Scored, class_points, issued_near
+from coursework.gradebook.class_points import Scored, class_points
+from coursework.gradebook.marks_record import read_record
 from coursework.gradebook.presence import ABSENT, EXCUSED, PRESENT, presence_near
 from coursework.gradebook.scale import USUAL_SCALE, exact
 from coursework.issuing.exam_columns import group_of
@@ -66,8 +67,8 @@ class SemesterLine:
 
 
 def assessed(marks: Path, weight: float, name: str = "") -> Assessed:
-    """Return the marks of a folder that ``grade`` wrote, or of the build above it; its ``issued.json`` and
-    ``attendance.csv`` beside it are read too.
+    """Return the marks of a folder that ``grade`` wrote, or of the build above it; ``attendance.csv`` beside
+    it is read too.
 
     Raises
     ------
@@ -77,16 +78,20 @@ def assessed(marks: Path, weight: float, name: str = "") -> Assessed:
     if (marks / "marks" / "summary.csv").is_file():
         marks = marks / "marks"
     path = marks / "summary.csv" if marks.is_dir() else marks
-    scale = ((issued_near(path) or {}).get("assignment") or {}).get("mark") or {}
+    record = read_record(path.parent)
     rows = list(rows_of(path)) if path.is_file() else []
     has_mark = any(row.get("mark") for row in rows)
     scored, of = class_points(marks, "mark" if has_mark else "percent"), 100.0
-    if has_mark:
-        of = float(scale.get("of", USUAL_SCALE["of"]))
+    if has_mark and record is None:
+        raise BadInput(
+            "{file}: the maximum of its marks is not known; name the folder that 'coursework grade' wrote",
+            file=path,
+        )
+    if has_mark and record is not None:
+        of = float((record.scale or USUAL_SCALE)["of"])
     if above := next((entry for entry in scored if typed_number(entry.points) > of), None):
         raise BadInput(
-            "{file}: the mark {mark} of {student} is above {of:g}; keep issued.json beside the folder "
-            "of marks, which states the maximum",
+            "{file}: the mark {mark} of {student} is above {of:g}, the best one",
             file=path,
             mark=above.points,
             student=above.name,

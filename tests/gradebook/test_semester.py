@@ -60,10 +60,14 @@ def year(tmp_path):
             line("Eve Lau", "7", "A", "0", answered=0),
         ],
     )
-    (tmp_path / "final" / "issued.json").write_text(
-        json.dumps({"assignment": {"mark": {"of": 10, "step": 0.5}}})
-    )
+    for name, of in (("midterm", 20), ("final", 10)):
+        record(tmp_path / name / "marks", of)
     return tmp_path
+
+
+def record(marks, of, *, by_codes=False):
+    content = {"mark": {"of": of, "step": 0.5}, "by_codes": by_codes, "questions": []}
+    (marks / ".exam.json").write_text(json.dumps(content))
 
 
 def semester(folder, *options):
@@ -113,14 +117,14 @@ def test_what_cannot_be_averaged_is_refused(year, capsys):
     attendance.write_text("student,present\nAda Byron,perhaps\n")
     refused("attendance.csv, line 2: present is present, absent or excused; found 'perhaps'")
     attendance.write_bytes(kept)
-    issued = year / "final" / "issued.json"
-    stated = json.loads(issued.read_text())
-    issued.write_text(json.dumps({**stated, "codes": {"Ada Byron": "K7M-3XP"}}))
+    record(year / "final" / "marks", 10, by_codes=True)
     refused("students go by codes")
-    issued.write_text(json.dumps({**stated, "codes": {"Ada Byron": "K7M-3XP"}, "lifted": "2026-12-10"}))
-    assert semester(year)[0] == 1
-    issued.write_text(json.dumps({"assignment": {"mark": {"of": 8, "step": 0.5}}}))
+    record(year / "final" / "marks", 8)
     refused("the mark 10 of Cy Ray is above 8")
+    (year / "final" / "marks" / ".exam.json").write_text("[]")
+    refused("is not as grade wrote it")
+    (year / "final" / "marks" / ".exam.json").unlink()
+    refused("the maximum of its marks is not known")
     for wrong in (f"{year / 'midterm'}:0", "student=" + str(year / "midterm"), str(year / "nothing")):
         assert run(["semester", wrong]) == 2
 
@@ -131,3 +135,27 @@ def test_an_assignment_may_be_called_as_a_state_is(year, capsys):
     said = capsys.readouterr().err
     assert "absence" not in said
     assert "1 student with a provisional mark" in said
+
+
+def test_marks_that_stand_far_from_their_exam_mean_the_same(small_course, tmp_path):
+    """The maximum, and in a report the numbers of questions, are those of the exam."""
+    (tmp_path / "exam.toml").write_text(
+        'mark = { of = 10, step = 0.5 }\nformats = "ipynb"\nsolutions = false\n'
+        '[[exercises]]\nname = "crank_pin"\n'
+    )
+    (tmp_path / "class.csv").write_text("student\nAda\n")
+    usual, out, far = ["--course", str(small_course)], tmp_path / "exam", tmp_path / "far" / "marks"
+    build = ["build", str(tmp_path / "exam.toml"), "--roster", str(tmp_path / "class.csv")]
+    assert run([*usual, *build, "--out", str(out)]) == 0
+    with (out / "instructor" / "key.csv").open(encoding="utf-8-sig", newline="") as file:
+        key = list(csv.DictReader(file))
+    columns = ["student", "exercise", "seed", "part", "answer"]
+    write(tmp_path / "typed.csv", [columns, *([k[c] for c in columns[:4]] + [k["value"]] for k in key)])
+    grade = ["grade", str(tmp_path / "typed.csv"), "--issued", str(out / "issued.json"), "--no-feedback"]
+    assert run([*usual, *grade, "--out", str(far)]) == 0
+    assert run(["semester", f"Exam={far}", "--out", str(tmp_path / "s.csv")]) == 0
+    with (tmp_path / "s.csv").open(encoding="utf-8-sig", newline="") as file:
+        [row] = csv.DictReader(file)
+    assert row["Exam"] == "20"
+    assert run([*usual, "report", str(far), "--lang", "en"]) == 0
+    assert "1.1 ·" in (far / "report" / "report.html").read_text("utf-8")
