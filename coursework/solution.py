@@ -51,7 +51,7 @@ from coursework.parsing.units import check_unit
 from coursework.quantities.error_kinds import PENALTIES
 from coursework.quantities.graph import Graph, QuantityNode, Replacement
 from coursework.quantities.in_radians import in_radians
-from coursework.quantities.loops import Loop, quantities, stated
+from coursework.quantities.loops import Loop, moving_quantities, quantities, stated
 
 if TYPE_CHECKING:
     from coursework.figures.polygons.own_drawing import OwnDrawing
@@ -410,14 +410,11 @@ class Solution:
         if not functions:
             raise BadCourse(f"{source} defines no quantity; a quantity is a function of its name")
         functions |= _hidden(functions, module)
-        needed = frozenset().union(*(QuantityNode.of(f).needs for f in functions.values()))
-        loops = stated(
-            source,
-            getattr(module, "LOOPS", {}),
-            getattr(module, "RATES", {}),
-            functions.keys(),
-            needed - functions.keys(),
-        )
+        needs = {k: QuantityNode.of(f).needs for k, f in functions.items()}
+        needed, rates = frozenset().union(*needs.values()), getattr(module, "RATES", {})
+        given = needed - functions.keys()
+        moving = moving_quantities(needs, given, rates)
+        loops = stated(source, getattr(module, "LOOPS", {}), rates, moving, {*given, *functions} - moving)
         functions |= quantities(loops)
         graph = Graph(functions)
         _check_told(source, graph)

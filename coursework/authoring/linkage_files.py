@@ -165,9 +165,9 @@ def report(exercise: CourseExercise[Any], made: CompiledLinkage, seed: int) -> l
                 continue
         else:
             own = " mm"
-        rows.append(
-            (Message("{name} over the motion", name=name), f"{along.min():.4g}{own} … {along.max():.4g}{own}")
-        )
+        # Rounding moves nothing: a body that stands still has one place.
+        ends = (f"{value:.4g}{own}" for value in np.round([along.min(), along.max()], 9) + 0.0)
+        rows.append((Message("{name} over the motion", name=name), " … ".join(dict.fromkeys(ends))))
     return [{"property": name, "value": value} for name, value in rows]
 
 

@@ -229,7 +229,9 @@ class Draws:
         right = {n: v for n, v in found.items() if n in solution.graph.names}
         for constraint in self._detectable:
             mistaken = solution.mistaken(constraint.mistake)
-            wrong = mistaken.evaluate(constraint.quantities, known, effects, right)
+            # A condition alone may know what the solution has no use for.
+            used = {n: v for n, v in known.items() if n in mistaken.leaves or n in mistaken.quantities}
+            wrong = mistaken.evaluate(constraint.quantities, used, effects, right)
             with np.errstate(all="ignore"):
                 holds = [constraint.holds(self._part_of(n), value, found[n]) for n, value in wrong.items()]
             answers[constraint.__name__] = np.all(np.broadcast_arrays(*holds), axis=0)

@@ -140,7 +140,7 @@ class ClosedChain:
         residual: Any
         condition: Any
         converged: Any
-        *result, residual, condition, converged = in_blocks(kernel, *inputs)
+        *result, residual, condition, converged, widest = in_blocks(kernel, *inputs)
         for i, name in enumerate(self.unknowns):
             if name in self._lengths:
                 result[i] = scaled(result[i], exponent)
@@ -153,6 +153,7 @@ class ClosedChain:
                     "the loops do not close from this start: a gap of {residual:.3g} is left; another "
                     "start, nearer to the pose that is meant, may close, or none exists",
                     residual=residual,
+                    loop=int(widest.item()),
                 )
         return Pose(dict(zip(self.unknowns, result, strict=True)), residual, condition, converged)
 
@@ -264,7 +265,8 @@ class ClosedChain:
         for i, name in enumerate(self.unknowns):
             if name in self._angles:
                 x[:, i] = _wrapped(x[:, i])
-        return *x.T, best, condition, converged.astype(float)
+        widest = abs(gaps).argmax(axis=1) // 2
+        return *x.T, best, condition, converged.astype(float), widest.astype(float)
 
     def _named(self, x: np.ndarray) -> dict[str, Any]:
         """Return the columns of unknowns by name, an angle as its unit vector."""

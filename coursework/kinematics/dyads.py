@@ -386,9 +386,9 @@ def _rrp_failure(p: Any, length: Any, point: Any, _: Any, along: Any) -> CannotA
     away = abs(float(cross(along, point - p)))
     return CannotAssemble(
         "the linkage does not close: the line is {away:.6g} away from the pin, but the rod reaches "
-        "only {length:.6g} (gap {gap:.3g})",
+        "only {rod:.6g} (gap {gap:.3g})",
         away=away,
-        length=length,
+        rod=length,
         gap=away - length,
     )
 

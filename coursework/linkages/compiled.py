@@ -6,6 +6,7 @@ from __future__ import annotations
 import itertools
 import linecache
 import os
+import re
 import sys
 import weakref
 from collections.abc import Collection, Iterator, Mapping, Sequence
@@ -43,6 +44,7 @@ from coursework.kinematics.four_bar import FourBar
 from coursework.kinematics.slider_crank import SliderCrank
 from coursework.linkages.closure import SlideTrack, closure_gaps, length_at, reference_values, turns_round
 from coursework.linkages.large import LargeGroup
+from coursework.linkages.meeting import meeting
 """
 _EXERCISE_IMPORTS = """\
 from coursework.figures import (
@@ -183,14 +185,19 @@ class CompiledLinkage:
         linkage, formulas = self.linkage, self.formulas
         results: list[tuple[str, str]] = []
         helpers = ""
+        # Of what the file requires something itself, a rate or a joint, it states the least.
+        stated = {word for text in linkage.required for word in re.findall(r"[A-Za-z_]\w*", text)}
         results += self._closing()
         varies = any(entry.value is None for entry in linkage.given.values()) or any(
             e.is_drawn for e in formulas.modes.values()
         )
         if varies and formulas.sines:
-            code = " & ".join(f"(abs({sine}) > 0.15)" for sine in formulas.sines.values() if names_in(sine))
+            sines = {p: sine for p, sine in formulas.sines.items() if names_in(sine) and p not in stated}
+            code = " & ".join(f"(abs({sine}) > 0.15)" for sine in sines.values())
             if code:
-                results.append(_condition("no_dead_point_is_near", code))
+                said = "no dead point is near (by 9°; require = {example} states another least)"
+                example = f"transmission_angle({next(iter(sines))}) > 4 deg"
+                results.append(_condition("no_dead_point_is_near", code, _least(said, example)))
         for polygon in self.questions.polygons if varies else ():
             lines, lengths = ", ".join(polygon.lines), ", ".join(polygon.lengths)
             code = f"np.maximum.reduce([{lengths}]) > 45 * {polygon.scale}"
@@ -204,6 +211,7 @@ class CompiledLinkage:
             if n.startswith(("omega", "alpha"))
             and n in formulas.quantities
             and names_in(formulas.quantities[n].code)
+            and n not in stated
         ]
         if linkage.drive.kind != "turn":  # a length's rate is no angle's
             rates = []
@@ -215,9 +223,17 @@ class CompiledLinkage:
             code = " & ".join(
                 s.replace(f"0.02 * {linkage.speed})", f"0.02 * abs({linkage.speed}))") for s in slow
             )
-            results.append(_condition("bodies_turn_visibly", code))
-        if varies and (swings := self._swings(asked)):
-            results.append(_condition("slides_move_visibly", " & ".join(swings)))
+            said = "bodies turn visibly (by 2 % of the driver; require = {example} states another least)"
+            example = f"abs({rates[0]}) > 0.1 {formulas.quantities[rates[0]].unit}"
+            results.append(_condition("bodies_turn_visibly", code, _least(said, example)))
+        if varies and (swings := self._swings({*asked} - stated)):
+            said = (
+                "slides move visibly (by 2 % of the longest length; require = {example} states another least)"
+            )
+            example = f"abs({next(iter(swings))}) > 1 mm/s"
+            results.append(
+                _condition("slides_move_visibly", " & ".join(swings.values()), _least(said, example))
+            )
         reader = ExpressionReader(
             {
                 **{n: e.unit for n, e in linkage.given.items()},
@@ -255,24 +271,24 @@ class CompiledLinkage:
             ]
         return results, helpers
 
-    def _swings(self, asked: Collection[str]) -> list[str]:
+    def _swings(self, asked: Collection[str]) -> dict[str, str]:
         """Return conditions that slides go to and fro by more than a fiftieth of the longest length, as
-        code, of each of which a rate is asked.
+        code by speed, of each of which a rate is asked.
 
         Of a motion to and fro, the speed and the acceleration together, over those of the driver, are half
         the travel at every instant: at a dead centre as in the middle.
         """
         linkage = self.linkage
-        lengths = [f"abs({n})" for n, e in linkage.given.items() if e.unit == "mm" and n != linkage.moved]
+        lengths = [f"abs({n})" for n in self.formulas.geometry if linkage.given[n].unit == "mm"]
         if not linkage.speed or not lengths:
-            return []
+            return {}
         longest = f"np.maximum.reduce(np.broadcast_arrays({', '.join(lengths)}))"
         rate = f"abs({linkage.speed})" + ("" if linkage.drive.kind == "turn" else f" / {longest}")
-        return [
-            f"(np.hypot({s.rates[0]} * {rate}, {s.rates[1]}) > 0.01 * {longest} * ({rate})**2)"
+        return {
+            s.rates[0]: f"(np.hypot({s.rates[0]} * {rate}, {s.rates[1]}) > 0.01 * {longest} * ({rate})**2)"
             for s in linkage.followed_slides
             if {*s.rates} & {*asked}
-        ]
+        }
 
     def _closing(self) -> Iterator[tuple[str, str]]:
         """Yield a constraint for each group: that its bodies meet, wherever the groups before it do."""
@@ -727,6 +743,11 @@ def _condition(name: str, code: str, said: str = "") -> tuple[str, str]:
     """Return a constraint as code; ``said`` is what messages call it, as code, else the words of its name."""
     function = f"def {name}({', '.join(names_in(code))}):\n    return {code}"
     return name, f"{function}\n\n\n{name}.said = {said or repr(name.replace('_', ' '))}"
+
+
+def _least(said: str, example: str) -> str:
+    """Return what messages call a constraint of which a file may state the least itself, as code."""
+    return f"Message({said!r}, example={f'{chr(34)}{example}{chr(34)}'!r})"
 
 
 def _given(entry: GivenEntry) -> str:

@@ -127,7 +127,13 @@ class FigureWriter:
             self._add(f"slot_link({start} - {reach}, {start} + {reach})")
             return
         straight = slide.along.is_zero and slide.through.is_origin
-        on_line = [p for p in points if straight and self.formulas.local(p, body).y.vanishes]
+        places = {p: self.formulas.local(p, body) for p in points}
+        # A bar leads to a point of the line that lies behind the slot's beginning.
+        on_line = [
+            p
+            for p, place in places.items()
+            if straight and place.y.vanishes and middle_value(place, self.linkage).real >= 0
+        ]
         lengths = [f"1.25 * max(abs({self._at(slide.at)} - {start}), 1.0)"]
         lengths += [f"abs({self._at(p)} - {start})" for p in on_line if p != slide.through_name]
         length = f"max({', '.join(lengths)})" if len(lengths) > 1 else lengths[0]
@@ -141,12 +147,14 @@ class FigureWriter:
     @property
     def _crank(self) -> str:
         """Length of the driving body, or where that is a slider of the first bar, as code."""
-        linkage = self.linkage
-        bars = [b for b in (linkage.bodies[linkage.driver], *linkage.bodies.values()) if len(b.points) > 1]
-        points = [*bars[0].points] if bars else [linkage.bodies[linkage.driver].at] * 2
-        start = bars[0].at if bars and bars[0].at in points else points[0]
-        end = next((p for p in points if p != start), start)
-        return f"abs({self._at(end)} - {self._at(start)})"
+        linkage, local = self.linkage, self.formulas.local
+        for body in (linkage.driver, *linkage.bodies):
+            points = linkage.bodies[body].points
+            start = linkage.bodies[body].at if linkage.bodies[body].at in points else next(iter(points))
+            for end in points:
+                if middle_value(local(end, body) - local(start, body), linkage):
+                    return f"abs({self._at(end)} - {self._at(start)})"
+        return "0.0"
 
     def _through(self, slide: SlideEntry) -> str:
         if slide.through_name:

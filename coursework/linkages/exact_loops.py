@@ -71,20 +71,21 @@ def keep_digits_of_bars(writer: FormulaWriter, group: Dyad, to_p: Arm, to_q: Arm
             f"FourBar(abs({frame.complex}), {', '.join(lengths)}, "
             f"{side}).at(Degrees.between(_frame_{B}, {_direction(arm)}))",
         )
-        _turn(writer, coupler, to_coupler, f"from_radians({loop}.coupler_angle) + _frame_{B}")
-        _turn(writer, rocker, to_rocker, f"from_radians({loop}.rocker_angle) + _frame_{B}")
+        named = f"'{coupler}, {rocker}', '{B}', '{start}', '{end}'"
+        _turn(writer, coupler, to_coupler, f"from_radians({loop}.coupler_angle) + _frame_{B}", named)
+        _turn(writer, rocker, to_rocker, f"from_radians({loop}.rocker_angle) + _frame_{B}", named)
         if sign > 0:
-            _stable(writer, f"psi_{B}", f"from_radians({loop}.corner)")
+            _stable(writer, f"psi_{B}", f"from_radians({loop}.corner)", named)
         place = (
             f"{writer.complex(end)} + polar({to_rocker.length.code}, from_radians({loop}.rocker_angle) + "
             f"_frame_{B})"
         )
-        writer.quantities[f"_{B}"] = replace(writer.quantities[f"_{B}"], code=place)
+        writer.quantities[f"_{B}"] = replace(writer.quantities[f"_{B}"], code=place, meeting=named)
         rate, gain = writer.omega(body), writer.alpha(body)
         for turned, ratio in ((coupler, "coupler"), (rocker, "rocker")):
-            _stable(writer, writer.omega(turned), f"{loop}.{ratio}_ratio * {rate}")
+            _stable(writer, writer.omega(turned), f"{loop}.{ratio}_ratio * {rate}", named)
             more = f" + {loop}.{ratio}_ratio * {gain}" if gain != "0" else ""
-            _stable(writer, writer.alpha(turned), f"{loop}.{ratio}_gain * {rate}**2{more}")
+            _stable(writer, writer.alpha(turned), f"{loop}.{ratio}_gain * {rate}**2{more}", named)
         for hidden in (f"_rates_{B}", f"_gains_{B}"):
             del writer.quantities[hidden]
         return
@@ -117,9 +118,9 @@ def keep_digits_of_slider(
     loop = f"SliderCrank({to_start.length.code}, {arm.length.code}, {away.across(heading).code}, side_{B})"
     angle = f"Degrees.between({heading.code}, {_direction(to_start)})"
     rate, gain = writer.omega(body), writer.alpha(body)
-    writer.hide(f"_at_{B}", f"{loop}.motion({angle}, order=0)")
-    writer.hide(f"_rates_{B}", f"{loop}.motion({angle}, {rate}, order=1)")
-    writer.hide(f"_gains_{B}", f"{loop}.motion({angle}, {rate}, {gain}, order=2)")
+    for stem, rates in (("at", ""), ("rates", f"{rate}, "), ("gains", f"{rate}, {gain}, ")):
+        code = f"{loop}.motion({angle}, {rates}order={rates.count(',')})"
+        writer.hide(f"_{stem}_{B}", code, f"{group.p}, {group.q}", B, str(group.outer_p))
     turn = f"from_radians(_at_{B}.rod_angle)" + (
         f" + {heading.code}" if heading.names or heading.constant else ""
     )
@@ -156,11 +157,11 @@ def _direction(arm: Arm) -> str:
     return (arm.heading + Heading((), 180.0 if arm.sign < 0 else 0.0)).code
 
 
-def _turn(writer: FormulaWriter, body: str, arm: Arm, code: str) -> None:
+def _turn(writer: FormulaWriter, body: str, arm: Arm, code: str, meeting: str = "") -> None:
     """Compute the angle of a body from the direction of a vector on it."""
     back = -(arm.heading - writer.heading(body)) + Heading((), 180.0 if arm.sign < 0 else 0.0)
-    _stable(writer, writer.turns[body], f"wrap({back.after(code)})")
+    _stable(writer, writer.turns[body], f"wrap({back.after(code)})", meeting)
 
 
-def _stable(writer: FormulaWriter, name: str, code: str) -> None:
-    writer.quantities[name] = replace(writer.quantities[name], stable=code)
+def _stable(writer: FormulaWriter, name: str, code: str, meeting: str = "") -> None:
+    writer.quantities[name] = replace(writer.quantities[name], stable=code, meeting=meeting)

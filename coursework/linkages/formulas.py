@@ -120,7 +120,12 @@ class FormulaWriter(HigherGroupWriter):
         side = self._mode(B, "", (P, Q))
         first, second = to_p.length, to_q.length
         point = self.hide(
-            f"_{B}", f"dyads.rrr({self.complex(P)}, {self.complex(Q)}, {first.code}, {second.code}, {side})"
+            f"_{B}",
+            f"dyads.rrr({self.complex(P)}, {self.complex(Q)}, {first.code}, {second.code}, {side})",
+            f"{p}, {q}",
+            B,
+            P,
+            Q,
         )
         corner = self.write(
             f"psi_{B}",
@@ -254,7 +259,11 @@ class FormulaWriter(HigherGroupWriter):
         unit = f"polar(1, {heading.code})"
         start = self.hide(f"_line_{B}", base.complex)
         point = self.hide(
-            f"_{B}", f"dyads.rrp({self.complex(P)}, {length.code}, {start} + 0j, {side}, {unit})"
+            f"_{B}",
+            f"dyads.rrp({self.complex(P)}, {length.code}, {start} + 0j, {side}, {unit})",
+            f"{p}, {q}",
+            B,
+            P,
         )
         reach = f"sqrt({length.factor}**2 - {height}**2)"
         ahead = rise.along(heading)
@@ -378,6 +387,10 @@ class FormulaWriter(HigherGroupWriter):
         pair = self.hide(
             f"_guide_{slide.at}",
             f"dyads.rpr({self.complex(P)}, {self.complex(Q)}, {offset or '0.0'}, {side})",
+            f"{p}, {q}",
+            slide.at,
+            P,
+            Q,
         )
         reach = length if not offset else f"sqrt({length}**2 - {offset}**2)"
         run = f"{side} * {reach}"
@@ -506,7 +519,10 @@ class FormulaWriter(HigherGroupWriter):
             )
             units = [f"polar(1, {way.code})" for way in (way_1, way_2)]
             hidden = self.hide(
-                f"_{name}", f"dyads.prp({start_1} + 0j, {units[0]}, {start_2} + 0j, {units[1]})"
+                f"_{name}",
+                f"dyads.prp({start_1} + 0j, {units[0]}, {start_2} + 0j, {units[1]})",
+                f"{group.p}, {group.q}",
+                name,
             )
             self.write_end(name, first.moved(first.base, one.distance), words, hidden)
             self._finish_rod(group.p, name)

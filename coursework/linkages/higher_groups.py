@@ -9,7 +9,7 @@ import numpy as np
 
 from coursework.linkages.entries import GROUND, NearEntry, SlideEntry
 from coursework.linkages.expressions import QuantityExpression
-from coursework.linkages.groups import HigherGroup
+from coursework.linkages.groups import HigherGroup, group_joints
 from coursework.linkages.loop_chains import LoopWriter, back, closure_latex, vector_code
 from coursework.linkages.points import Chain, dotted, local_plane, middle, rotated, value_of
 from coursework.linkages.terms import Plane, Sum
@@ -31,7 +31,7 @@ class HigherGroupWriter(LoopWriter):
             )
         slides = [s for s in linkage.slides.values() if {s.of, s.on} & {*group.bodies}]
         number = 1 + sum(name.startswith("_chain_") for name in self.quantities)
-        loops, placed = self._loops(group)
+        loops, closed, placed = self._loops(group)
         self.loops |= {f"loop_{number}_{k}": loop for k, loop in enumerate(loops, start=1)}
         placing = {"0", *(self.turns[b] for b in self.order), linkage.moved}
         turns = {t: b for b in group.bodies if (t := self.turns[b]).startswith("theta") and t not in placing}
@@ -46,13 +46,15 @@ class HigherGroupWriter(LoopWriter):
         self.followed[solved] = tuple(q.name for q in needed)
         listed = "".join(f"({', '.join(map(vector_code, loop))},), " for loop in loops)
         self.constants[chain] = (
-            f"LargeGroup(({listed}), {tuple(unknowns)!r}, {near!r}, {linkage.moved!r}, "
+            f"LargeGroup(({listed}), {tuple(unknowns)!r}, {near!r}, {tuple(closed)!r}, "
+            f"{linkage.moved!r}, "
             f"{linkage.near.driver!r}, {self._step!r}, "
             f"lambda: ({''.join(f'{q.name}, ' for q in needed)}))"
         )
         arguments = dict.fromkeys([linkage.moved, *leaves, *(n for n in known if n not in moving)])
         words = {"bodies": ", ".join(group.bodies), "loops": self._loop_text(loops)}
-        self.hide(solved, f"{chain}.pose(dict({', '.join(f'{n}={n}' for n in arguments)}))")
+        posed = f"{chain}.pose(dict({', '.join(f'{n}={n}' for n in arguments)}))"
+        self.hide(solved, posed, words["bodies"], ", ".join(group_joints(group, linkage)))
         for turn, body in turns.items():
             code, told = f"{solved}.degrees('{turn}')", {**words, "body": body}
             self.write(turn, code, "deg", "turn_large", words=told, silent=True)
@@ -93,9 +95,9 @@ class HigherGroupWriter(LoopWriter):
                 )
                 self.write(name, code, f"mm/s{power}", f"{stem}_large", symbol, words=told, silent=True)
 
-    def _loops(self, group: HigherGroup) -> tuple[list[Chain], list[str]]:
-        """Return the independent loops of a group, and the names of the coordinates of placed points in
-        them."""
+    def _loops(self, group: HigherGroup) -> tuple[list[Chain], list[str], list[str]]:
+        """Return the independent loops of a group, the joint that closes each, and the names of the
+        coordinates of placed points in them."""
         slides = self.linkage.slides
         joints: dict[str, list[str]] = {}
         for point in self.linkage.points:
@@ -113,6 +115,7 @@ class HigherGroupWriter(LoopWriter):
         outer = [*ways]
         entries: dict[str, str] = {}  #: of each body, the point from which it is followed
         loops: list[Chain] = []
+        closed: list[str] = []  #: joints, by loop
         waiting, done = list(outer), set()
         while waiting:  # points and bodies in turn; what is reached twice closes a loop
             item = waiting.pop(0)
@@ -133,10 +136,11 @@ class HigherGroupWriter(LoopWriter):
                 there = [*ways[start], *self._leg(body, start, point)]
                 if point in ways:
                     loops.append([*there, *back(ways[point])])
+                    closed.append(point)
                 else:
                     ways[point] = there
                     waiting.append(point)
-        return loops, list(dict.fromkeys(placed))
+        return loops, closed, list(dict.fromkeys(placed))
 
     def _near(
         self, turns: Mapping[str, str], slides: Sequence[SlideEntry], near: NearEntry

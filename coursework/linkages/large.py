@@ -11,7 +11,7 @@ import numpy as np
 
 from coursework.degrees import from_radians
 from coursework.errors import CannotAssemble
-from coursework.kinematics.chains import ClosedChain, Vector
+from coursework.kinematics.chains import ClosedChain, Pose, Vector
 from coursework.messages import as_message
 from coursework.quantities.graph import Graph
 
@@ -40,6 +40,8 @@ class LargeGroup:
         Names of the angles of its bodies.
     near
         Their rough values, radians, with the driver at ``near_driver``.
+    ends
+        Of each loop, the joint that closes it.
     driver
         Name of the driver's angle, degrees, or of its length, mm.
     near_driver
@@ -56,6 +58,7 @@ class LargeGroup:
         loops: Sequence[Sequence[Vector]],
         unknowns: Sequence[str],
         near: Mapping[str, float],
+        ends: Sequence[str],
         driver: str,
         near_driver: float,
         step: float,
@@ -63,6 +66,7 @@ class LargeGroup:
     ) -> None:
         self.chain = ClosedChain(loops, unknowns)
         self.near, self.driver, self.near_driver, self.step = near, driver, near_driver, step
+        self._ends = ends
         self._is_angle = driver.startswith("theta")
         self._functions = functions
         self._ways: dict[tuple, dict[int, Mapping[str, Any]]] = {}
@@ -101,7 +105,7 @@ class LargeGroup:
         else:
             start = self._passed(given, float(way))
         known = self._known(given)
-        pose = self.chain.solve(known, start)
+        pose = self._closed(known, start)
         return LargePose({**known, **pose.values}, pose.condition)
 
     def _followed(self, given: Mapping[str, Any], way: Any) -> Mapping[str, Any]:
@@ -144,17 +148,31 @@ class LargeGroup:
                 before = poses[sign * (number - 1)]
                 known = self._known({**given, self.driver: place})
                 try:
-                    poses[sign * number] = self.chain.solve(known, before).values
+                    poses[sign * number] = self._closed(known, before).values
                 except CannotAssemble as fault:
                     raise CannotAssemble(
-                        "followed from near, {driver} = {start:.6g}, the group cannot pass {driver} = "
-                        "{place:.6g}: {problem}",
+                        "followed from near, {driver} = {start:.6g} {unit}, they cannot pass {driver} = "
+                        "{place:.6g} {unit}: {problem}",
+                        unit="deg" if self._is_angle else "mm",
                         driver=self.driver,
                         start=self.near_driver,
                         place=place,
                         problem=as_message(fault),
                     ) from fault
         return poses[sign * count]
+
+    def _closed(self, known: Mapping[str, Any], start: Mapping[str, Any]) -> Pose:
+        """Return the pose nearest to another; where it does not close, scalars say at which joint."""
+        try:
+            return self.chain.solve(known, start)
+        except CannotAssemble as fault:
+            values = as_message(fault).values
+            raise CannotAssemble(
+                "a gap of {residual:.3g} mm is left at {joint}; another place in near may close, or none "
+                "exists",
+                residual=values["residual"],
+                joint=self._ends[values["loop"]],
+            ) from fault
 
     def _known(self, values: Mapping[str, Any]) -> dict[str, Any]:
         """Return what the loops know with the driver at an angle."""

@@ -55,7 +55,8 @@ class LoopWriter(PointWriter):
         if value.code.isidentifier():
             return value.code
         if name not in self.quantities:
-            self.write(name, value.code, "mm", "length", words={"B": point})
+            symbol = name.removeprefix("d_") if name.startswith("d_") else ""
+            self.write(name, value.code, "mm", "length", symbol, words={"B": point})
         return name
 
     def _way(self, point: str) -> Chain:

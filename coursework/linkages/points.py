@@ -51,6 +51,7 @@ class Quantity:
     words: Mapping[str, str] = field(default_factory=dict)
     stable: str = ""
     silent: bool = False  #: whether its code is no formula to print
+    meeting: str = ""  #: code of what an error of it names: bodies and points
 
     @property
     def needs(self) -> tuple[str, ...]:
@@ -68,8 +69,12 @@ class Quantity:
         lines = []
         if self.step.endswith("_y"):
             lines.append(f'@told_after("{self._first_component}")')
+        named = f"meeting({self.meeting})" if self.meeting else ""
         if self.stable:
-            lines.append(f"@stable(lambda {', '.join(names_in(self.stable))}: {self.stable})")
+            function = f"lambda {', '.join(names_in(self.stable))}: {self.stable}"
+            lines.append(f"@stable({f'{named}({function})' if named else function})")
+        elif named:
+            lines.append(f"@{named}")
         body = (
             [f"    result = {self.code}", "    return result"] if self.silent else [f"    return {self.code}"]
         )
@@ -255,10 +260,11 @@ class PointWriter:
         self.write(quantity.name, quantity.code, quantity.unit)
         self.quantities[quantity.name] = quantity
 
-    def hide(self, name: str, code: str) -> str:
-        """Add a hidden quantity, and return its name."""
+    def hide(self, name: str, code: str, *meeting: str) -> str:
+        """Add a hidden quantity, and return its name; ``meeting`` are the bodies, the joint and the points
+        placed before that an error of it names."""
         if name not in self.quantities:
-            self.quantities[name] = Quantity(name, code)
+            self.quantities[name] = Quantity(name, code, meeting=", ".join(map(repr, meeting)))
         return name
 
     def local(self, point: str, body: str) -> Plane:

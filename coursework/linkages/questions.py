@@ -304,7 +304,7 @@ class QuestionWriter:
             self.loops[name] = self._around(group)
             for form in wanted:
                 variables = [*names, *(rates if form.endswith("_dot") else ())]
-                words = {"points": self._around(group), "symbols": ", ".join(f"`{v}`" for v in variables)}
+                words = {"points": self._around(group), "symbols": ", ".join(map(self._typed, variables))}
                 fields = {
                     "kind": '"equation"',
                     "variables": repr(tuple(variables)),
@@ -313,6 +313,11 @@ class QuestionWriter:
                     "points": "2" if form.startswith("complex") else "1",
                 }
                 self._ask(f"{name}_{form}", f"equation_{form}", words, **fields)
+
+    def _typed(self, name: str) -> str:
+        """Return how a quantity is typed, with its symbol where no reader would know it by its name."""
+        symbol = f" (${self.formulas.symbol(name)}$)" if name.startswith(("d_", "delta_", "phi_")) else ""
+        return f"`{name}`{symbol}"
 
     def _around(self, group: Group) -> str:
         return ", ".join(

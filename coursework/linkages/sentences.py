@@ -15,6 +15,7 @@ from coursework.linkages.entries import GROUND, Place, SlideEntry
 from coursework.linkages.expressions import QuantityExpression
 from coursework.linkages.formulas import FormulaWriter
 from coursework.linkages.groups import Dyad, HigherGroup, Wheel
+from coursework.linkages.points import local_plane, middle_value
 from coursework.linkages.questions import LinkageQuestion, QuestionWriter
 from coursework.quantities.formula_latex import PrintedName, tree_latex
 
@@ -100,6 +101,12 @@ class SentenceWriter:
         else:
             kind = "plate"
         return self.tables["body"][kind].replace("<points>", "".join(map(point_latex, points)))
+
+    def is_ahead(self, place: Place) -> bool:
+        """Return whether a place lies on the first axis, on the side to which it points."""
+        if place.radius is not None or not place.y.is_zero or place.is_origin:
+            return False
+        return middle_value(local_plane(place), self.linkage).real > 0
 
     def is_guide(self, name: str) -> bool:
         """Return whether another body slides on a body."""
@@ -287,7 +294,7 @@ def _body(writer: SentenceWriter, name: str) -> str:
         return writer.sentence("statement", "jack", words)
     turned = name == linkage.driver and drive.kind == "turn"
     far = points[others[0]]
-    if len(others) == 1 and far.radius is None and far.y.is_zero:
+    if len(others) == 1 and writer.is_ahead(far):
         words |= {"B": others[0], "length": writer.latex(far.x)}
         ends = start + others[0]  # what the length is called where the file states a number
         words["long"] = "" if far.x.code == ends else writer.sentence("statement", "long", words)
@@ -329,11 +336,7 @@ def _directions(writer: SentenceWriter) -> list[str]:
             continue
         points = linkage.bodies[name].points
         start = next((p for p, place in points.items() if place.is_origin), None)
-        ahead = [
-            p
-            for p, place in points.items()
-            if place.radius is None and place.y.is_zero and not place.is_origin
-        ]
+        ahead = [p for p, place in points.items() if writer.is_ahead(place)]
         words = {"symbol": formulas.symbol(turn), "name": name}
         if start and ahead:
             results[turn] = writer.sentence("statement", "direction", {**words, "P": start, "B": ahead[0]})

@@ -55,7 +55,10 @@ def refuse_still_sides(polygons: Sequence[PolygonWriter], exercise: ModuleType, 
             if share < polygon.least / 2 and f"abs({side.value})" in polygon.lines:
                 vector = plain_line(f"${side.name}$", "en")
                 why = (
-                    Message("{vector} is zero in all positions, as on a body that never turns", vector=vector)
+                    Message(
+                        "{vector} is zero in all positions, as on a body that never turns, or turns steadily",
+                        vector=vector,
+                    )
                     if share <= _NOTHING
                     else Message(
                         "{vector} has at most {share:.2g} % of the longest vector, and is drawn from "

@@ -47,13 +47,8 @@ def if_long(start: Any, end: Any, wrong: Any) -> np.ndarray:
 
 def scale_for(*images: Any) -> Any:
     """Return the least of 1, 2 and 5 times a power of ten at which the pole and these images fit the box."""
-    images = (np.zeros_like(images[0]), *images)
-    least = np.maximum(
-        (np.maximum.reduce([z.real for z in images]) - np.minimum.reduce([z.real for z in images]))
-        / _BOX_MM[0],
-        (np.maximum.reduce([z.imag for z in images]) - np.minimum.reduce([z.imag for z in images]))
-        / _BOX_MM[1],
-    )
+    places = np.stack(np.broadcast_arrays(0j, *images))
+    least = np.maximum(np.ptp(places.real, axis=0) / _BOX_MM[0], np.ptp(places.imag, axis=0) / _BOX_MM[1])
     decade = 10.0 ** np.ceil(np.log10(least))
     return decade * np.select([5 * least <= decade, 2 * least <= decade], [0.2, 0.5], 1.0)
 

@@ -271,7 +271,8 @@ def stated(
 
     The angle ``theta3`` has ``omega3`` and ``alpha3``, another quantity ``r6`` has ``r6_dot`` and
     ``r6_ddot``, as far as the solution knows them; ``rates`` names those that are called otherwise. A given
-    quantity without a derivative is constant; where one is ``computed``, the loop is derived no further.
+    quantity without a derivative is constant; where one is ``computed`` from what moves, the loop is
+    derived no further.
 
     Raises
     ------
@@ -298,6 +299,31 @@ def stated(
             loop, rates={n: r for n, r in rate_names.items() if r[0]}, known=first + second
         )
     return results
+
+
+def moving_quantities(
+    needs: Mapping[str, Collection[str]], given: Collection[str], rates: Mapping[str, tuple[str, str]]
+) -> set[str]:
+    """Return the computed quantities that a given one moves, one with a derivative; all where none has any.
+
+    Parameters
+    ----------
+    needs
+        By computed quantity, what its function takes.
+    given
+        The other quantities.
+    rates
+        Names of derivatives that are not the usual ones, by quantity.
+    """
+    names = {*needs, *given}
+    moved = {n for n in given if any(rates.get(n) or usual_rates(n, names))}
+    if not moved:
+        return {*needs}
+    grows = True
+    while grows:
+        more = {n for n, own in needs.items() if n not in moved and not moved.isdisjoint(own)}
+        moved, grows = moved | more, bool(more)
+    return moved - {*given}
 
 
 def usual_rates(name: str, names: Collection[str]) -> tuple[str, str]:

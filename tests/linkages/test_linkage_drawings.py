@@ -9,11 +9,12 @@ from linkage_samples import course
 
 from coursework.api import open_course
 from coursework.authoring.checks import check_all
-from coursework.authoring.linkage_files import LINKAGES
+from coursework.authoring.linkage_files import LINKAGES, mechanism_alone
 from coursework.figures.polygons import Side, polygon_of_velocities
 from coursework.figures.polygons.hand_drawn import judge_drawing
 from coursework.linkages.compiled import compiled
 from coursework.linkages.vectors import PolygonWriter
+from coursework.marking.drawn_polygons import scale_for
 from coursework.marking.marking import mark
 
 POLE = np.array([31.0, -12.0])
@@ -141,6 +142,58 @@ def test_equations_of_a_loop_are_right_in_any_form_and_a_missing_bar_is_named():
     assert {n: marks[n].points for n in right} == dict.fromkeys(right, 1.0)
     marks = mark(variant, {"loop_2_x": "r5*cos(theta4) + s_E = 0"})
     assert (marks["loop_2_x"].points, marks["loop_2_x"].verdict) == (0.0, "slip:link_missing")
+
+
+#: A Whitworth quick return whose ram hangs on the slotted body behind its pivot, on a bar whose length is an
+#: expression.
+WHITWORTH = """title = { fr = "Whitworth", en = "Whitworth" }
+[given]
+r1 = "50 mm"
+r2 = { from = "90 mm", to = "130 mm", step = "5 mm" }
+r5 = "80 mm"
+r6 = { from = "200 mm", to = "230 mm", step = "5 mm" }
+theta2 = { from = "0 deg", to = "355 deg", step = "5 deg" }
+omega2 = { from = "3 rad/s", to = "9 rad/s", step = "1 rad/s" }
+[ground]
+O = ["0 mm", "0 mm"]
+C = ["0 mm", "-r1"]
+F = ["260 mm", "r1"]
+[bodies]
+2 = { at = "O", angle = "theta2", points = { A = "r2" } }
+3 = { points = { A = "0 mm" } }
+4 = { at = "C", points = { D = "-r5" } }
+5 = { points = { D = "0 mm", E = "r6 + r5" } }
+6 = { at = "F", points = { E = "200 mm" } }
+[slides]
+A = { of = "3", on = "4", through = "C", distance = "s" }
+[assembly]
+E = "left of D -> F"
+[ask]
+equations = ["x", "x_dot"]
+velocities = ["omega6"]
+"""
+
+
+def test_a_bar_behind_a_slot_is_drawn_and_a_length_that_is_an_expression_stands_still(tmp_path):
+    path = tmp_path / "whitworth.toml"
+    path.write_text(WHITWORTH, "utf-8")
+    with mechanism_alone(path, open_course) as (exercise, _):
+        variant = exercise.variant(1)
+        found = exercise.solve(only=("xD", "yD"), **variant.given)
+        ends = {complex(found["xD"], found["yD"]), -1j * variant.given["r1"]}
+        bars = [[complex(p) for p in e.points] for e in variant.figure.elements if hasattr(e, "points")]
+        assert any(all(min(abs(p - end) for p in bar) < 1e-9 for end in ends) for bar in bars)
+        right = "d_CD*omega4*sin(theta4) = d_DE*omega5*sin(theta5) - FE*omega6*sin(theta6)"
+        statement = variant.in_language("en").handout().statement
+        assert r"\theta_4$ of the first axis of body 4" in statement  # which is not the direction of CD
+        assert "CD = -" not in statement
+        assert mark(variant, {"loop_2_x_dot": right})["loop_2_x_dot"].points == 1.0
+
+
+def test_a_scale_fits_vectors_of_which_some_are_the_same_at_all_instants():
+    moving = np.array([20 + 40j, 300 - 90j])
+    alone = [scale_for(50j, z) for z in moving]
+    assert scale_for(50j, moving) == pytest.approx(alone)
 
 
 def test_no_two_vectors_of_a_polygon_have_one_name_and_relative_ones_name_both_points():

@@ -3,14 +3,15 @@
 import re
 import shutil
 
+import numpy as np
 import pytest
-from linkage_samples import FOLDER
+from linkage_samples import FOLDER, course
 from tables import each_row
 
 from coursework import open_course
 from coursework.authoring.linkage_editing import questions
 from coursework.authoring.linkage_files import mechanism_alone
-from coursework.errors import BadCourse, BadInput, Starved
+from coursework.errors import BadCourse, BadInput, CannotAssemble, Starved
 from coursework.linkages.compiled import compiled
 from coursework.messages import localised
 
@@ -223,6 +224,77 @@ def test_an_assembly_that_exists_for_no_draw_names_the_joints_that_stay_open(
     with pytest.raises(Starved) as caught:
         open_course(exercises.parent)[name].variant(0)
     assert re.findall(r"bodies [^(]* meet at [A-Z, ]*[A-Z]", str(caught.value)) == [refused]
+
+
+def test_a_file_states_the_least_that_its_own_machine_needs(tmp_path):
+    """A jaw crusher hardly turns its jaw: the usual least is told with what states another one."""
+    path = tmp_path / "toggle.toml"
+    text = re.sub(r"(?m)^polygon = .*|^instant_centres = .*", "", TOGGLE)
+    text = re.sub(r"(?m)^r2 = .*", 'r2 = "2 mm"', text)
+    path.write_text(text, "utf-8")
+    with mechanism_alone(path, open_course) as (exercise, _), pytest.raises(Starved) as caught:
+        exercise.variant(0)
+    for lang, said in (("en", "states another least"), ("fr", "fixe un autre seuil")):
+        told = localised(caught.value, lang)
+        assert re.search(rf'require = "abs\(omega3\) > 0.1 rad/s" {said}', told), told
+    own = '"abs(omega3) > 0.01 rad/s", "abs(omega4) > 0.01 rad/s"'
+    path.write_text(text.replace('"is_crank(2)"', f'"is_crank(2)", {own}'), "utf-8")
+    with mechanism_alone(path, open_course) as (exercise, _):
+        rates = [exercise.variant(seed).solution() for seed in range(8)]
+    assert 0.01 < min(abs(s[n]) for s in rates for n in ("omega3", "omega4")) < 0.02 * 12
+
+
+def test_a_condition_may_name_what_the_solution_has_no_use_for(tmp_path):
+    """Such as the limits of a jack, in a file whose variants are tried for the other assembly as well."""
+    path = tmp_path / "tipper.toml"
+    text = (FOLDER / "exercises" / "tipper.toml").read_text("utf-8")
+    path.write_text(text.replace("[given]", '[given]\nrequire = "L_max > 1.01 * L_min"', 1), "utf-8")
+    with mechanism_alone(path, open_course) as (exercise, _):
+        assert exercise.variant(0).given["L_max"] > 1.01 * exercise.variant(0).given["L_min"]
+
+
+def _apart(first, last):
+    return float(np.hypot(*np.subtract(first, last)))
+
+
+def _on_circle(radius, degrees):
+    return radius * np.cos(np.radians(degrees)), radius * np.sin(np.radians(degrees))
+
+
+@each_row(
+    "name, given, place, gap",
+    [
+        (
+            "toggle",
+            {"theta2": 100.0, "r2": 50.0, "r3": 130.0, "r4": 20.0},
+            "3, 4 at B",
+            _apart(_on_circle(50, 100), (180, 0)) - 150,
+        ),
+        (
+            "slider_crank",
+            {"theta2": 90.0, "r2": 60.0, "r3": 45.0, "e": 5.0, "omega2": 12.0},
+            "3, 4 at B",
+            60 - 5 - 45,
+        ),
+        ("shaper", {"theta2": 90.0, "r2": 60.0, "h": 800.0, "omega2": 2.0}, "5, 6 at E", 800 - 560 - 180),
+        ("class_three", {"theta2": 60.0, "r2": 400.0, "omega2": 1.0}, "3, 4, 5, 6 at E, F, G", None),
+    ],
+)
+def test_numbers_that_do_not_close_name_the_joint_and_what_is_missing(name, given, place, gap):
+    """In both languages; of a larger group, which Newton's method leaves open, one of its joints."""
+    with pytest.raises(CannotAssemble) as caught:
+        course()[name].solve(**dict(course()[name].variant(1).given) | given)
+    bodies, joints = place.split(" at ")
+    for lang, said, missing in (
+        ("en", f"bodies {bodies} do not meet at {joints}: ", r"\(gap ([\d.e+]+) mm\)"),
+        ("fr", f"les solides {bodies} ne se rejoignent pas en {joints}\u202f: ", r"\(écart ([\d.e+]+) mm\)"),
+    ):
+        told = localised(caught.value, lang)
+        assert told.startswith(said)
+        if gap is None:
+            assert re.search(rf"([\d.]+) mm (?:is left at|en) [{joints}]", told)
+        else:
+            assert float(re.search(missing, told)[1]) == pytest.approx(gap, rel=5e-3)
 
 
 def test_a_changed_file_is_compiled_anew(tmp_path):
