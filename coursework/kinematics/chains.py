@@ -150,10 +150,10 @@ class ClosedChain:
             converged = bool(converged)
             if not converged:
                 raise CannotAssemble(
-                    "the loops do not close from this start: a gap of {residual:.3g} is left; another "
-                    "start, nearer to the pose that is meant, may close, or none exists",
+                    "the loops do not close from this start: a gap of {residual:.3g} is left in loop {loop}; "
+                    "another start, nearer to the pose that is meant, may close, or none exists",
                     residual=residual,
-                    loop=int(widest.item()),
+                    loop=int(widest.item()) + 1,
                 )
         return Pose(dict(zip(self.unknowns, result, strict=True)), residual, condition, converged)
 

@@ -27,8 +27,39 @@ class FormulaWriter(HigherGroupWriter):
         super().__init__(linkage)
         for group in self.groups:
             self._place(group)
+        self._refuse_unused_assembly()
         for point in linkage.points:  # a length that places one is a quantity, whatever is asked
             self.at(point)
+
+    def _refuse_unused_assembly(self) -> None:
+        """Refuse a way to assemble that no group has, which its author would believe to be taken."""
+        linkage = self.linkage
+        for point in linkage.assembly:
+            if point not in self.modes:
+                raise linkage.refused(
+                    ("assembly", point),
+                    "{point} is assembled in one way; two ways have {found}",
+                    point=point,
+                    found=", ".join(self.modes) or "-",
+                )
+        if linkage.near and not any(isinstance(group, HigherGroup) for group in self.groups):
+            raise linkage.refused(
+                ("assembly", "near"),
+                "near is for a group of class III and above, and all groups here are pairs of bodies: leave "
+                "it out",
+            )
+
+    def _bar(self, body: str, start: str, end: str) -> Arm:
+        """Return the vector of a body between two joints, which are apart."""
+        if (self.local(end, body) - self.local(start, body)).vanishes:
+            raise self.linkage.refused(
+                ("bodies", body),
+                "the joints {start} and {end} of body {body} are in one place: a bar has a length",
+                start=start,
+                end=end,
+                body=body,
+            )
+        return self.arm(body, start, end)
 
     def _place(self, group: Group) -> None:
         match group:
@@ -114,7 +145,7 @@ class FormulaWriter(HigherGroupWriter):
         assert isinstance(B, str)
         assert isinstance(Q, str)
         p, q = group.p, group.q
-        to_p, to_q = self.arm(p, P, B), self.arm(q, Q, B)
+        to_p, to_q = self._bar(p, P, B), self._bar(q, Q, B)
         words = {"P": P, "B": B, "Q": Q, "p": p, "q": q}
         distance, line = self._line(P, Q)
         side = self._mode(B, "", (P, Q))
@@ -248,7 +279,7 @@ class FormulaWriter(HigherGroupWriter):
         assert isinstance(B, str)
         assert isinstance(slide, SlideEntry)
         p, q = group.p, group.q
-        arm = self.arm(p, P, B)
+        arm = self._bar(p, P, B)
         track = self.track(slide, q, B)
         placed, base, sign, heading = track
         words = {"P": P, "B": B, "p": p, "q": q, "guide": placed, "s": slide.distance}

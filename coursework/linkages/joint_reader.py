@@ -73,6 +73,16 @@ class JointReader(TableReader):
                 str(origin),
                 None if angle is None else self._expression((*at, "angle"), angle, "deg"),
             )
+        for name, body in results.items():
+            others = [p for b in results.values() if b is not body for p in b.points]
+            if "at" in table[name] and body.at not in (*ground, *others):
+                raise self.refused(
+                    ("bodies", name),
+                    "body {name} begins at {point}, a point of no other body{found}",
+                    name=name,
+                    point=body.at,
+                    found=nearest(body.at, dict.fromkeys([*ground, *others])),
+                )
         return results
 
     def _body_points(self, name: str, value: Mapping[str, Any]) -> dict[str, Place]:
@@ -189,6 +199,18 @@ class JointReader(TableReader):
                     raise self.refused(
                         at, "no point {point!r}{found}", point=point, found=nearest(point, points)
                     )
+            ends = [
+                {b for b in (GROUND, *bodies) if p in (ground if b == GROUND else bodies[b].points)}
+                for p in (start, end)
+            ]
+            if shared := sorted(ends[0] & ends[1]):
+                raise self.refused(
+                    at,
+                    "a jack joins two bodies; its ends {start} and {end} are both points of body {body}",
+                    start=start,
+                    end=end,
+                    body="1" if GROUND in shared else shared[0],
+                )
             if length not in given or given[length].unit != "mm":
                 raise self.refused(
                     at,
@@ -298,6 +320,10 @@ class JointReader(TableReader):
                 self._expression(at, r, "mm", f"R{body}")
                 for r, body in zip(value["radii"], pair, strict=False)
             )
+            for text, radius in zip(value["radii"], (first, second), strict=True):
+                constant = self.constants.get(radius.code)
+                if radius.is_zero or (constant and not (constant.value or 0) > 0):
+                    raise self.refused(at, "a radius is above 0; found {found!r}", found=text)
             results.append(
                 GearEntry(pair[0], pair[1], pair[2], (first, second), bool(value.get("inner", False)))
             )

@@ -171,7 +171,7 @@ class LargeGroup:
                 "a gap of {residual:.3g} mm is left at {joint}; another place in near may close, or none "
                 "exists",
                 residual=values["residual"],
-                joint=self._ends[values["loop"]],
+                joint=self._ends[values["loop"] - 1],
             ) from fault
 
     def _known(self, values: Mapping[str, Any]) -> dict[str, Any]:

@@ -272,7 +272,8 @@ class _LinkageReader(JointReader):
             raise self.refused(at, "{form}; found {torque!r}", form=form, torque=torque)
         results = []
         for load in loads:
-            self.only(load, ("on", "moment", "force", "angle"), at, "load")
+            keys = ("moment",) if "moment" in load and "force" not in load else ("force", "angle", "moment")
+            self.only(load, ("on", *keys), at, "load")
             on = str(load.get("on", ""))
             points = [p for b in bodies.values() for p in b.points]
             known = bodies if "moment" in load else points

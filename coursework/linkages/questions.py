@@ -243,6 +243,13 @@ class QuestionWriter:
                 key=key,
                 example=example,
             )
+        if linkage.given[linkage.speed].value == 0 and not (key == "accelerations" and linkage.acceleration):
+            raise linkage.refused(
+                ("ask", key),
+                "{key} need a driver that moves; found {speed} = 0",
+                key=key,
+                speed=linkage.speed,
+            )
 
     @property
     def _moving_points(self) -> tuple[str, ...]:
@@ -269,6 +276,16 @@ class QuestionWriter:
 
     def _unknown(self, name: str, at: tuple[str, str], able: Any) -> None:
         listed = [n for n in able if not n.startswith("_")]
+        point = name.removeprefix("V_").removeprefix("a_")
+        if name in self.linkage.given or point in self.linkage.ground:
+            why = (
+                Message("{name} is given", name=name)
+                if name in self.linkage.given
+                else Message("{point} is a fixed point", point=point)
+            )
+            raise self.linkage.refused(
+                at, "{why}; what follows can be asked: {able}", why=why, able=", ".join(listed)
+            )
         raise self.linkage.refused(at, "no quantity {name!r}{near}", name=name, near=nearest(name, listed))
 
     # ----------------------------------------------------------------- equations

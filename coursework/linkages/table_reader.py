@@ -152,6 +152,14 @@ class TableReader(TomlReader):
             raise self._no_entry(at, name)
         step = value.get("step")
         stated = [v for v in (value["from"], value["to"], step) if v is not None]
+        for later in re.findall(r"[A-Za-z_]\w*", f"{value['from']} {value['to']}"):
+            if later in self._table("given") and later not in self.units:
+                raise self.refused(
+                    at,
+                    "a bound names quantities before it; {later} stands no earlier than {name}",
+                    later=later,
+                    name=name,
+                )
         units = [self._checked(at, reader.unit, v) for v in stated]
         unit = next((u for u in units if u != "1"), "1")
         self._has_unit(at, name, unit, value["from"])

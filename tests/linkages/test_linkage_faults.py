@@ -140,6 +140,25 @@ FAULTS = [
     ('["theta3", "theta4", "B"]', '"theta3"', 26, "a list of names"),
     ('moment = "20 N*m"', 'moment = "20 N*m", force = "3 N"', 32, 'or { on = "B", force'),
     ('moment = "20 N*m"', 'moment = "20 N"', 32, "where a value in N*m stands"),
+    ('moment = "20 N*m"', 'moment = "20 N*m", angle = "3 deg"', 32, "no key 'angle' in load"),
+    (
+        '3 = { points = { A = "0 mm", B = "r3" } }',
+        '3 = { points = { A = "0 mm", B = "0 mm" } }',
+        18,
+        "in one place",
+    ),
+    ('to = "70 mm", step', 'to = "0.4 * r3", step', 5, "r3 stands no earlier than r2"),
+    ('omega2 = "12 rad/s"', 'omega2 = "0 rad/s"', 27, "a driver that moves; found omega2 = 0"),
+    ('4 = { at = "C", ', '4 = { at = "D", ', 19, "begins at D, a point of no other body"),
+    (
+        '["theta3", "theta4", "B"]',
+        '["theta2", "B"]',
+        26,
+        "theta2 is given; what follows can be asked: theta3",
+    ),
+    ('velocities = ["omega3"', 'velocities = ["V_C"', 27, "C is a fixed point; what follows"),
+    ('B = "left of A -> C"', 'B = "left of A -> C"\nA = "left of O -> B"', 23, "two ways have B"),
+    ('B = "left of A -> C"', 'B = "left of A -> C"\nnear = { angle = "20 deg" }', 23, "leave it out"),
 ]
 
 
@@ -148,12 +167,14 @@ LENGTHS = [
     ("tipper", 'length = "L" }', 'length = "a9" }', 16, "length of a jack is a given quantity"),
     ("tipper", 'rod = "3"', 'rod = "4"', 16, "two bodies with names of their own"),
     ("tipper", 'from = "C"', 'from = "D"', 16, "no point 'D'"),
+    ("tipper", 'from = "C"', 'from = "B"', 16, "B and B are both points of body 4"),
+    ("tipper", 'to = "B"', 'to = "O"', 16, "C and O are both points of body 1"),
     ("tipper", 'length = "L" }', 'length = "L", limits = ["440 mm"] }', 16, 'limits = ["300 mm", "500 mm"]'),
     ("tipper", 'length = "L" }', 'legnth = "L" }', 16, "a jack is 2 ="),
     (
         "tipper",
         "[assembly]",
-        '5 = { from = "O", to = "G", rod = "6", length = "a" }\n[assembly]',
+        '5 = { from = "C", to = "G", rod = "6", length = "a" }\n[assembly]',
         17,
         "two bodies are driven, 2 and 5",
     ),
@@ -181,6 +202,7 @@ LENGTHS = [
     ("digger_arm", "near = {", "far = {", 16, "a way to assemble"),
     ("piston_engine", 'on = "ground", through', 'on = "3", through', 17, "a point of body 3 itself"),
     ("geared_five_bar", 'radii = ["R2", "R5"]', 'radii = ["R2"]', 20, "a gear is G ="),
+    ("geared_five_bar", 'radii = ["R2", "R5"]', 'radii = ["R2", "0 mm"]', 20, "a radius is above 0"),
 ]
 
 
