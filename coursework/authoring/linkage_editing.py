@@ -103,15 +103,18 @@ def questions(made: CompiledLinkage) -> dict[str, list[CheckBox]]:
             ("accelerations", "alpha", "a_", "_ddot"),
         ):
             rates = [t.replace("theta", stem, 1) for t in turns]
+            # A rate that follows from nothing is an easy question; one that comes out as zero, none.
+            still = made.equal_in_all([(rate, "0") for rate in rates if formulas.quantities[rate].needs])
+            rates = [rate for rate in rates if (rate, "0") not in still]
             able[key] = [*rates, *(f"{s}{end}" for s in slides), *(f"{mark}{p}" for p in points)]
         able["polygon"] = [kind for kind in POLYGONS if kind not in made.undrawn]
         bodies = {"1": GROUND, **{b: b for b in linkage.bodies if b.isdigit() and len(b) == 1}}
         centres = [f"I{i}{j}" for i in bodies for j in bodies if i < j and i != "1"]
-        able["instant_centres"] = [
-            f"I1{j}" for j in bodies if j != "1" and formulas.turns[j].startswith("theta")
-        ] + [
-            c for c in centres if formulas.turns[c[1]] != formulas.turns[c[2]]
-        ]  # of bodies that are turned alike it is at infinity
+        # Of bodies that are turned alike it is at infinity.
+        apart = {f"I1{j}": (formulas.omega(j), "0") for j in bodies if j != "1"}
+        apart |= {c: (formulas.omega(c[1]), formulas.omega(c[2])) for c in centres}
+        alike = made.equal_in_all([*apart.values()])
+        able["instant_centres"] = [c for c, (i, j) in apart.items() if i != j and (i, j) not in alike]
         turning = [b for b in linkage.bodies if formulas.turns[b] in turns]
         slid = [s for s in linkage.followed_slides if s.on == GROUND]
         able["advantage"] = ("advantage",) if turning or slid else ()

@@ -21,13 +21,13 @@ from coursework.linkages.entries import GROUND, GivenEntry, LinkageFile, Place, 
 from coursework.linkages.exact_loops import keep_digits
 from coursework.linkages.expressions import ExpressionReader, QuantityExpression
 from coursework.linkages.formulas import FormulaWriter
-from coursework.linkages.groups import Dyad, group_joints
+from coursework.linkages.groups import Dyad, HigherGroup, group_joints
 from coursework.linkages.linkage_file import author_faults, read_linkage
 from coursework.linkages.loop_chains import vector_code
 from coursework.linkages.points import Quantity, names_in
 from coursework.linkages.questions import QuestionWriter
 from coursework.linkages.sentences import exercise_text, solution_text, spoken
-from coursework.linkages.still_sides import refuse_still_sides
+from coursework.linkages.still_sides import equal_in_all, refuse_still_sides
 from coursework.linkages.vectors import PAPER_MM, POLYGONS
 from coursework.messages import Message, as_message
 from coursework.model import symbol_of
@@ -590,8 +590,19 @@ class CompiledLinkage:
     def refuse_still_polygons(self) -> None:
         """Refuse a polygon that is asked and has nothing to draw, with the line of the question."""
         if polygons := self.questions.polygons:
-            modules = (self._executed(kind, self.linkage.path.stem) for kind in ("exercises", "solutions"))
-            refuse_still_sides(polygons, *modules)
+            refuse_still_sides(polygons, *self._modules)
+
+    def equal_in_all(self, pairs: Collection[tuple[str, str]]) -> Collection[tuple[str, str]]:
+        """Return the pairs of quantities that are the same in all positions; none of a larger group, whose
+        positions take long."""
+        if any(isinstance(group, HigherGroup) for group in self.formulas.groups):
+            return ()
+        return equal_in_all(pairs, *self._modules)
+
+    @cached_property
+    def _modules(self) -> tuple[ModuleType, ModuleType]:
+        name = self.linkage.path.stem
+        return self._executed("exercises", name), self._executed("solutions", name)
 
     @cached_property
     def undrawn(self) -> Mapping[str, Message]:
@@ -602,7 +613,8 @@ class CompiledLinkage:
             try:
                 CompiledLinkage(alone).refuse_still_polygons()
             except BadInput as fault:
-                reasons[kind] = as_message(fault).values["problem"]
+                problem = as_message(fault).values["problem"]
+                reasons[kind] = problem.values.get("why", problem)
         return reasons
 
     # --------------------------------------------------------------------- texts

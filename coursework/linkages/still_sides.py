@@ -3,7 +3,7 @@ is there to draw."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from types import ModuleType
 from typing import Any
 
@@ -75,6 +75,37 @@ def refuse_still_sides(polygons: Sequence[PolygonWriter], exercise: ModuleType, 
                     kind=polygon.kind,
                     table="velocities" if polygon.kind == "velocity" else "accelerations",
                 )
+
+
+def equal_in_all(
+    pairs: Collection[tuple[str, str]], exercise: ModuleType, solution: ModuleType
+) -> frozenset[tuple[str, str]]:
+    """Return the pairs of quantities that have the same value wherever the mechanism closes, such as the rate
+    of a body that never turns and ``"0"``.
+
+    Parameters
+    ----------
+    pairs
+        Names of quantities.
+    exercise, solution
+        As for :func:`refuse_still_sides`.
+    """
+    known = Solution.of(exercise.__name__, solution, "").graph
+    given = _samples(exercise.EXERCISE.given)
+    asked = {name for pair in pairs for name in pair}
+    names = [*asked & known.names]
+    with np.errstate(all="ignore"):
+        found = known.evaluate(names, {n: v for n, v in given.items() if n in known.leaves})
+    values = {n: np.broadcast_to(v, _SAMPLES) for n, v in {**given, **found, "0": 0.0}.items() if n in asked}
+    closes = np.isfinite(np.array([values[name] for name in names])).all(axis=0)
+    sizes = {n: np.max(abs(v[closes]), initial=0.0) for n, v in values.items()}
+    largest = max((sizes[n] for n in names), default=0.0)
+    return frozenset(
+        (one, other)
+        for one, other in pairs
+        if {one, other} <= values.keys()
+        and np.max(abs(values[one] - values[other])[closes], initial=0.0) <= _NOTHING * largest
+    )
 
 
 def _samples(given: Mapping[str, Any]) -> dict[str, Any]:

@@ -380,3 +380,19 @@ def test_a_polygon_with_nothing_to_draw_is_refused_when_the_file_is_read_and_not
         box.name for box in questions(made).get("polygon", ()) if box.name == "velocity"
     }
     assert bool(refused) == ("velocity" in made.undrawn)
+
+
+@each_row("name", ["bus_wiper", "peaucellier", "planet_wheel"])
+def test_no_box_offers_a_rate_that_is_zero_or_a_centre_at_infinity_in_all_positions(name):
+    """Compared with the rates of some variants; a rate that is 0 by its formula can be asked."""
+    made, exercise = compiled(FOLDER / "exercises" / f"{name}.toml"), course()[name]
+    boxes = {key: {box.name for box in able} for key, able in questions(made).items()}
+    bodies = [b for b in made.linkage.bodies if made.formulas.turns[b].startswith("theta")]
+    rates = {b: f"omega{b}" for b in bodies}
+    found = [exercise.solve(only=tuple(rates.values()), **exercise.variant(seed).given) for seed in range(6)]
+    turned = {b: np.array([f[n] for f in found]) for b, n in rates.items()} | {"1": np.zeros(6)}
+    alike = {(i, j) for i in turned for j in turned if i < j and np.allclose(turned[i], turned[j], atol=1e-9)}
+    assert boxes["instant_centres"] & {f"I{i}{j}" for i, j in alike} == set()
+    assert len(boxes["instant_centres"]) >= len(turned) * (len(turned) - 1) // 2 - len(alike)
+    still = {f"omega{j}" for i, j in alike if i == "1"}
+    assert {rates[b] for b in bodies if b != made.linkage.driver} - boxes["velocities"] == still
