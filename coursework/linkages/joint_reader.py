@@ -168,6 +168,14 @@ class JointReader(TableReader):
                 form=form,
                 stated=stated,
             )
+        numbers = [self.constants[n.code].value for n in names if n.code in self.constants]
+        if len(numbers) == 2 and not (numbers[0] or 0) < (numbers[1] or 0):
+            raise self.refused(
+                at,
+                "limits go from the smaller length to the greater; found {first}, {last}",
+                first=stated[0],
+                last=stated[1],
+            )
         return names[0].code, names[1].code
 
     # -------------------------------------------------------------------- joints

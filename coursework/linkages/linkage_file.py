@@ -284,6 +284,8 @@ class _LinkageReader(JointReader):
                     form=form,
                     found=dict(load),
                 )
+            if on in self._table("ground"):
+                raise self.refused(at, "{point} is a fixed point, where a force does no work", point=on)
             results.append(
                 LoadEntry(
                     on,

@@ -150,6 +150,8 @@ class TableReader(TomlReader):
         self.only(value, ("from", "to", "step", "nonzero"), at, name)
         if "from" not in value or "to" not in value:
             raise self._no_entry(at, name)
+        if not isinstance(value.get("nonzero", False), bool):
+            raise self.refused((*at, "nonzero"), "nonzero = true; found {found!r}", found=value["nonzero"])
         step = value.get("step")
         stated = [v for v in (value["from"], value["to"], step) if v is not None]
         for later in re.findall(r"[A-Za-z_]\w*", f"{value['from']} {value['to']}"):
