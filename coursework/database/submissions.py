@@ -165,16 +165,21 @@ def _sittings_query() -> CompoundSelect[Any]:
     )
 
 
-def counts(
-    connection: Connection, assignment_id: int, rows: Sequence[AnswerRow | Rejected | PlatformFile]
+def is_current(
+    connection: Connection,
+    assignment_id: int,
+    rows: Sequence[AnswerRow | Rejected | PlatformFile],
+    source: str,
 ) -> bool:
-    """Return True if a submission of a file with these rows was received, and no later one replaced it."""
-    found = select(delivery.c.id).where(
+    """Return True if these rows are those of the submission from a source that counts; without rows, if there
+    is none."""
+    found = select(delivery.c.digest).where(
         delivery.c.assignment_id == assignment_id,
-        delivery.c.digest == _digest(rows, None),
+        delivery.c.source == source,
         delivery.c.replaced.is_(None),
     )
-    return connection.execute(found).first() is not None
+    digests = {*connection.execute(found).scalars()}
+    return digests == {_digest(rows, None)} or not (digests or rows)
 
 
 def submission_alike(connection: Connection, assignment_id: int, digest: str) -> Submission:

@@ -137,6 +137,21 @@ def test_a_page_without_a_code_is_told_whose_it_is(desk):
     assert [one.student for one in pages(desk)] == ["Cy"], "what is kept of Cy holds it, and goes with Cy"
 
 
+def test_marks_go_when_it_is_taken_back_whose_page_it_is(desk):
+    send(desk, ("coffee.png", as_png(b"\xff" * 2000 + b"coffee" * 30)))
+    card = desk.page(TEACHER, "/scans/queue")
+    code = re.search(r'<option value="(\w+)">Cy', card.text)[1]
+    fill(desk, "/queue", card=field(card, "card"), do="confirm", paper=code, number="1")
+    while "Nothing waits" not in desk.page(TEACHER, "/scans").text:
+        card = desk.page(TEACHER, "/scans/queue")
+        fill(desk, "/queue", card=field(card, "card"), do="confirm", answer="1")
+    assert marks(desk, "Cy")["rA"][0] == "1"
+    while "nothing to undo" not in told(fill(desk, "/queue", do="undo")):
+        pass
+    assert not marks(desk, "Cy")
+    assert "whose page" in desk.page(TEACHER, "/scans/queue").text.lower()
+
+
 def test_two_who_look_at_one_card_decide_once(desk):
     send(desk, ("a.png", picture(desk, "Ada", rA="~12", theta4="~1")))
     card = field(desk.page(TEACHER, "/scans/queue"), "card")

@@ -12,7 +12,7 @@ from typing import Any
 from coursework.database.assignments import issued_content
 from coursework.database.marking import mark_new
 from coursework.database.scans import pages_scanned, typed_texts
-from coursework.database.submissions import counts, insert_submission
+from coursework.database.submissions import insert_submission, is_current
 from coursework.gradebook.rows import AnswerRow
 from coursework.messages import Message, localised
 from coursework.parsing.scanned import scan_reference
@@ -152,20 +152,18 @@ def hand_over(site: Site, number: int, now: ClassScans) -> int:
 
     Answers that wait are submitted as their pictures: they wait for a person, and marks are provisional.
     """
-    rows = now.rows
-    if not rows:
-        return 0
-    with site.store.begin() as connection:
-        insert_submission(connection, number, rows, source=SOURCE, received_at=site.clock(), replaces=True)
-    mark_new(site.course, site.store, number)
+    if not is_handed_over(site, number, now):
+        rows, at = now.rows, site.clock()
+        with site.store.begin() as connection:
+            insert_submission(connection, number, rows, source=SOURCE, received_at=at, replaces=True)
+        mark_new(site.course, site.store, number)
     return len(now.answers)
 
 
 def is_handed_over(site: Site, number: int, now: ClassScans) -> bool:
-    """Return True if what is read so far is what the last submission of scans states, or nothing is."""
-    rows = now.rows
+    """Return True if what is read so far is what the last submission of scans states."""
     with site.store.reading() as connection:
-        return not rows or counts(connection, number, rows)
+        return is_current(connection, number, now.rows, SOURCE)
 
 
 __all__ = ["ANSWERS", "LOST", "SOURCE", "ClassScans", "class_scans", "hand_over"]
