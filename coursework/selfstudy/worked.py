@@ -351,6 +351,8 @@ def named_question(question: Question) -> str:
     bare, symbol = (re.sub(r"[{}\s]", "", text) for text in (first, question.symbol))
     if f"${symbol}$" in bare or f"${symbol}=" in bare:
         return f"{first}{unit}{''.join(rest)}"
+    if prompt.endswith(".") and len(rest) == 1:
+        return f"{first}, ${question.symbol}${unit}."
     return f"{prompt} ${question.symbol}${unit}"
 
 

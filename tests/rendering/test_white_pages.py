@@ -87,6 +87,7 @@ def test_the_whole_book_has_few_white_pages_and_each_reference_names_its_page(la
     volumes = [RENDERER.book_pdf(book, apart=apart) for apart in (False, True)]
     wrong, count = wrong_references(volumes[0])
     assert (wrong, count > 1000) == ([], True)
+    assert list(out_of_turn(volumes[0])) == []
     if lang == "en":
         texts = [page.get_textpage().get_text_bounded() for page in pypdfium2.PdfDocument(volumes[0])]
         assert list(led_astray(texts)) == []
@@ -107,6 +108,18 @@ def test_a_drawing_to_scale_lies_on_none_of_the_words_before_it(monkeypatch):
     solved = solution(heading("fr"), ("velocity_polygon", "four_bar_motion"))
     pages = pypdfium2.PdfDocument(RENDERER.pdf(solved))
     assert {n: letters for n, page in enumerate(pages, 1) if (letters := covered(page)) > 1} == {}
+
+
+def out_of_turn(volume):
+    """The figures of lessons that stand above one with a smaller number, with their page."""
+    last = {}
+    for number, page in enumerate(pypdfium2.PdfDocument(volume), 1):
+        told = re.findall(r"^Figure (\d+)\.(\d+)\.", page.get_textpage().get_text_range(), re.MULTILINE)
+        stand = sorted((places([page], f"Figure {lesson}.{k}.")[0][1], lesson, int(k)) for lesson, k in told)
+        for _, lesson, k in stand:
+            if k < last.get(lesson, 0):
+                yield number, f"{lesson}.{k}"
+            last[lesson] = k
 
 
 def led_astray(texts):

@@ -148,7 +148,7 @@ def _fill(
             return
         drill = _drill(variant, part, grade, back=back)
         kinds = drill.kinds if drill else ()
-        if drill and all(posed[kind] < _MOST for kind in kinds):
+        if drill and all(posed[kind] < (1 if back else _MOST) for kind in kinds):
             variant_told = f"{drill.exercise} {drill.seed} "
             asked = variant_told + part.quantity
             given = {variant_told + name for name in drill.values if name not in variant.used} - {asked}
@@ -213,7 +213,9 @@ def _drill(variant: Variant, part: Part, grade: int, *, back: bool) -> Drill | N
             drill = _turned(variant, replace(question, unit=""), drill)
         elif question.choices:
             cases = dict(question.choices)
-            drill = replace(drill, text=f"{drill.text} ({'; '.join(cases.values())})", answer=cases[answer])
+            between = f"{words(variant.lang)['sheet']['separator']} "
+            listed = between.join(cases.values())
+            drill = replace(drill, text=f"{drill.text} ({listed})", answer=cases[answer])
         else:
             drill = replace(drill, answer=_told(variant, part.quantity, answer), result=float(answer))
         given = ", ".join(
@@ -221,7 +223,8 @@ def _drill(variant: Variant, part: Part, grade: int, *, back: bool) -> Drill | N
         )
     except (CourseworkError, ArithmeticError, LookupError, TypeError, ValueError):
         return None
-    return replace(drill, text=f"{given}. {drill.text}" if given else drill.text)
+    text = drill.text.replace(r"\dfrac", r"\frac")  # in a line of small type
+    return replace(drill, text=f"{given}. {text}" if given else text)
 
 
 def _turned(variant: Variant, question: Question, drill: Drill) -> Drill:

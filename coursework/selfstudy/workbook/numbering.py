@@ -54,6 +54,13 @@ class BoxRule:
             return any(link.kind == TERM and link.name == self.term for link in links(paragraph))
         return self.text in paragraph
 
+    def head(self, paragraph: str) -> str:
+        """Return its title: an entry of the index that is turned about, or that is told from another, as the
+        paragraph says it."""
+        said = next((link.said for link in links(paragraph) if self.term and link.name == self.term), "")
+        title = said if {",", "("} & {*self.term} else self.title
+        return title[:1].upper() + title[1:]
+
 
 def boxes_of(folder: Folder, lesson: str, lang: str) -> tuple[BoxRule, ...]:
     """Return the definitions and rules of a lesson, as ``exercises/book/boxes.toml`` states them.
@@ -75,7 +82,7 @@ def boxes_of(folder: Folder, lesson: str, lang: str) -> tuple[BoxRule, ...]:
         raise BadCourse(f"exercises/book/boxes.toml: {lesson}: write {_FORM}") from fault
     return (
         *(BoxRule("rule", title, text=said) for title, said in rules),
-        *(BoxRule("definition", term[:1].upper() + term[1:], term=term) for term in terms),
+        *(BoxRule("definition", term, term=term) for term in terms),
     )
 
 
@@ -143,13 +150,14 @@ class LessonNumbers:
                 plain.append(self._equations(first))
                 continue
             self._boxes = [one for one in self._boxes if one is not box]
+            title = box.head(first)
             boxed = [self._equations(first)]
             while paragraphs and paragraphs[0].startswith("$$") and not first.rstrip().endswith("."):
                 boxed.append(self._equations(first := paragraphs.pop(0)))
             if plain:
                 yield ProsePiece("\n\n".join(plain))
                 plain = []
-            yield BoxPiece(box.sort, self._next(box.sort), box.title, "\n\n".join(boxed))
+            yield BoxPiece(box.sort, self._next(box.sort), title, "\n\n".join(boxed))
         if plain:
             yield ProsePiece("\n\n".join(plain))
 

@@ -43,7 +43,7 @@ def test_what_a_lesson_shows_is_numbered_in_its_order():
         BoxPiece(
             "definition",
             "3.1",
-            "Rod, rigid",
+            "Rod",
             'A [rod](#index "rod, rigid") is rigid:\n\n$$ r = 1 $$ (3.1)',
         ),
         ProsePiece("and that is all."),
@@ -67,6 +67,10 @@ def test_every_box_that_the_course_states_finds_its_paragraph(course):
                 fitting = [one for one in paragraphs if box.fits(one)]
                 if not fitting or len(fitting[0]) > 900:
                     missing.append((lang, name, box))
+                elif (
+                    re.search(r", (?!in full|énoncé complet)|\(", title := box.head(fitting[0])) or not title
+                ):
+                    missing.append((lang, name, title))  # it is turned about, as in an index
     assert missing == []
 
 
