@@ -12,6 +12,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from contextvars import ContextVar
 from functools import cache
+from numbers import Real
 from pathlib import Path
 from typing import Any
 
@@ -21,6 +22,9 @@ _AGREEMENT = re.compile(r"\{(\w+):(\w*)\|(\w*)\}")
 _PLACES = tuple(f"note{number}" for number in range(1, 100))
 _ONE_BELOW_TWO = ("fr",)  #: languages whose nouns are singular below two
 _NARROW = "\N{NARROW NO-BREAK SPACE}"
+#: Place of a number with a format; one in double quotes is for a file, whose numbers have a point.
+_NUMBER = re.compile(r'(?<!")\{(\w+):([^{}|]+)\}')
+_SIGNS = {"fr": str.maketrans({",": _NARROW, ".": ","})}  #: between thousands, and before decimals
 _language: ContextVar[str] = ContextVar("language of messages", default="en")
 
 
@@ -133,8 +137,16 @@ def _filled(template: str, values: Mapping[str, Any], lang: str) -> str:
     if not values:
         return text
     text = _AGREEMENT.sub(lambda place: place[2 if _form(values[place[1]], lang) == "one" else 3], text)
+    if lang in _SIGNS:
+        text = _NUMBER.sub(lambda place: _number(place, values, lang), text)
     translated = {n: localised(v, lang) if _is_translated(v) else v for n, v in values.items()}
     return text.format(**translated)
+
+
+def _number(place: re.Match[str], values: Mapping[str, Any], lang: str) -> str:
+    """Return the number of a place with the signs of a language; the place itself for another value."""
+    value = values.get(place[1])
+    return format(value, place[2]).translate(_SIGNS[lang]) if isinstance(value, Real) else place[0]
 
 
 def _form(value: Any, lang: str) -> str:

@@ -210,6 +210,20 @@ def test_a_message_is_printed_in_the_language_of_its_reader():
     assert isinstance(error, UnknownName)
 
 
+def test_numbers_of_a_message_have_the_signs_of_its_language():
+    table = [
+        (Message("{share:.0f} of {size:.3g} mm", share=12.0, size=1.25), "12 of 1,25 mm"),
+        (
+            Message("{count:,} rows, at most {most:,}", count=1234567, most=20),
+            "1\u202f234\u202f567 rows, at most 20",
+        ),
+        (Message('write "{number:g} {unit}"', number=0.5, unit="mm"), 'write "0.5 mm"'),
+        (Message("{name:>4}", name="a.b"), " a.b"),
+    ]
+    assert [message.in_language("fr") for message, _ in table] == [text for _, text in table]
+    assert str(table[0][0]) == "12 of 1.25 mm"
+
+
 def test_values_that_are_messages_are_translated_with_the_whole():
     error = BadInput("{cells} where the header has {most}", cells=counted(3, "cell"), most=5)
     assert str(error) == "3 cells where the header has 5"
