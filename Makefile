@@ -57,7 +57,7 @@ test-all: $(VENV)/ready-test $(VENV)/ready-e2e style  ## Every test, sweeps at f
 # Each commit names one of sixty-four shares by its own digits.
 SHARE ?= $(shell printf '%d/64' "$$((0x$$(git rev-parse --short=7 HEAD) % 64))")
 
-# What test has, a quarter of the whole commands and of the tests with other programs, a part in 32 of the sweeps over exercises
+# What test has, an eighth of the whole commands and of the tests with other programs, a part in 32 of the sweeps over exercises
 # and one in 64 of their long ends. Tests with other programs wait for these: there is one worker more than processors.
 test-share: $(VENV)/ready-test $(VENV)/ready-e2e style  ## Every promise, and a share of the sweeps that changes with each commit
 	$(subst auto,$$(($$(getconf _NPROCESSORS_ONLN) + 1)),$(PYTEST)) --share $(SHARE)

@@ -24,7 +24,7 @@ MEMORY = Path("/dev/shm")  #: files that are in memory, where a system has such 
 _PREFIX = "coursework-tests-"  #: of their names, before the process that writes
 ROOM = 6 << 30  #: bytes that must be free there, and of memory
 _PLACE = pytest.StashKey[str]()
-_PARTS = {"sweep": 2, "e2e": 16}  #: parts of the shares of slow tests that make one of these tests
+_PARTS = {"sweep": 2, "e2e": 8}  #: parts of the shares of slow tests that make one of these tests
 
 # What a run finds another finds as well; `--hypothesis-profile searching` looks elsewhere each time.
 settings.register_profile("same", derandomize=True, deadline=None, print_blob=True)
@@ -38,7 +38,7 @@ def pytest_addoption(parser):
         metavar="K/N",
         default="0/1",
         help="run the K-th of N shares of the slow tests, K from 0 on, one of N/2 shares of the sweeps, one "
-        "of N/16 of the whole commands",
+        "of N/8 of the whole commands",
     )
 
 
