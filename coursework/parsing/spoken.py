@@ -7,6 +7,7 @@ import re
 from collections.abc import Sequence
 from functools import lru_cache
 
+from coursework.errors import bare_letters
 from coursework.language.words import languages, words
 from coursework.parsing.labels import folded
 from coursework.parsing.reading import Stop
@@ -51,15 +52,18 @@ def refers_elsewhere(text: str) -> bool:
 # ------------------------------------------------------------------- beside a number
 
 
+_OFFERS_TWO = re.compile(r"\w (?:ou|or|et|and)$")
+
+
 def _either(category: str) -> str:
     """Return the words of every language as a pattern, their spaces of any length, with accents and
-    without."""
+    without; not ``d ou`` for ``d'où``, which offers the choice d or another."""
     phrases = {
         w
         for lang in languages()
         for word in words(lang)["answers"][category]
-        for w in (word, folded(word))
-        if w
+        for w in (word, bare_letters(word), folded(word))
+        if w and not _OFFERS_TWO.match(w)
     }
     return "|".join(re.escape(w).replace(r"\ ", r"[\s-]+") for w in sorted(phrases, key=len, reverse=True))
 

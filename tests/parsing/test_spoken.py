@@ -12,7 +12,7 @@ from coursework.language.numbers import significant
 from coursework.marking.answers import read
 from coursework.marking.feedback import echo
 from coursework.parsing.numbers import read_integer, read_number
-from coursework.parsing.spoken import refers_elsewhere, says_nothing
+from coursework.parsing.spoken import bare, refers_elsewhere, says_nothing
 
 COURSE = coursework.open_course()
 
@@ -201,6 +201,11 @@ def test_what_is_read_is_told_back_whole_in_every_exercise():
                 if "…" in echo(read_as, "fr"):
                     cut.append((name, part.id, read_as))
     assert cut == []
+
+
+def test_a_letter_or_another_answer_are_two_and_no_word_before_one():
+    assert [bare(text) for text in ("d'où b", "d’où b", "d'ou b", "D'où : b")] == ["b"] * 4
+    assert [bare(text) for text in ("d ou b", "D ou b")] == ["d ou b", "D ou b"]
 
 
 def test_what_denies_or_doubts_an_answer_is_none():
