@@ -21,7 +21,6 @@ from coursework.gradebook.placing import SheetKey, Sheets
 from coursework.gradebook.presence import presence_on_roster
 from coursework.gradebook.rows import TITLES, Rejected
 from coursework.gradebook.waiting import (
-    SHOWN_ON_REQUEST,
     AnswerGroup,
     Measure,
     OpenGroup,
@@ -247,7 +246,7 @@ class ClassState:
     @property
     def waiting(self) -> int:
         """Number of answers and rows that wait for a person."""
-        answers = sum(len(group.members) for group in self.open.values() if group.why not in SHOWN_ON_REQUEST)
+        answers = sum(len(group.members) for group in self.exam.open)
         return answers + sum(row.waits for row in self.named)
 
     @cached_property

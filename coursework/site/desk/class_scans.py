@@ -22,8 +22,6 @@ from coursework.scanning.parts import Joins
 from coursework.scanning.queue import ScanQueue
 from coursework.scanning.scan import LEAST, as_told, papers_asked, together
 from coursework.scanning.scan_store import (
-    ANSWERS,
-    LOST,
     REFUSED,
     PageScan,
     Scanned,
@@ -84,7 +82,7 @@ class ClassScans:
         """Answers on papers whose student is known."""
         return self._of_students(self.gathered.answers)
 
-    @property
+    @cached_property
     def rows(self) -> list[AnswerRow]:
         """Rows of a submission: the answers, and references to the pictures of those that wait."""
         return [
@@ -153,9 +151,9 @@ def hand_over(site: Site, number: int, now: ClassScans) -> int:
     Answers that wait are submitted as their pictures: they wait for a person, and marks are provisional.
     """
     if not is_handed_over(site, number, now):
-        rows, at = now.rows, site.clock()
+        at = site.clock()
         with site.store.begin() as connection:
-            insert_submission(connection, number, rows, source=SOURCE, received_at=at, replaces=True)
+            insert_submission(connection, number, now.rows, source=SOURCE, received_at=at, replaces=True)
         mark_new(site.course, site.store, number)
     return len(now.answers)
 
@@ -164,6 +162,3 @@ def is_handed_over(site: Site, number: int, now: ClassScans) -> bool:
     """Return True if what is read so far is what the last submission of scans states."""
     with site.store.reading() as connection:
         return is_current(connection, number, now.rows, SOURCE)
-
-
-__all__ = ["ANSWERS", "LOST", "SOURCE", "ClassScans", "class_scans", "hand_over"]

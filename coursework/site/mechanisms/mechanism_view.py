@@ -135,6 +135,7 @@ def _found(path: Path, text: str, lang: str) -> dict[str, Any]:
         variants = [exercise.variant(seed, lang) for seed in range(_VARIANTS)]
         said, moves = words(lang, "site")["mechanisms"], exercise.spec.driver or exercise.film
         sheets = [answer_sheet(variant, polygons=False) for variant in variants]
+        asked = questions(made)
         rows = [_row(row["property"], row["value"], lang) for row in report(exercise, made, 0)]
         return {
             "rows": rows,
@@ -145,11 +146,11 @@ def _found(path: Path, text: str, lang: str) -> dict[str, Any]:
                 for each in dict.fromkeys([lang, *languages()])
             ],
             "lengths": lengths(text, made),
-            "questions": questions(made),
+            "questions": asked,
             "undrawn": [localised(why, lang) for why in dict.fromkeys(made.undrawn.values())],
             "symbols": {
                 n: exercise.symbol(n) if n in made.linkage.given else _symbol(n)
-                for n in (*made.linkage.given, *(c.name for able in questions(made).values() for c in able))
+                for n in (*made.linkage.given, *(c.name for able in asked.values() for c in able))
             },
         }
 
