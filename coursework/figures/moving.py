@@ -216,7 +216,7 @@ def drawing(
     stages = _stages(frames, scale, (low + high) / 2)
     tracks = [*_drawn(stages), *_moving_marks(arrows, spots, scale)]
     named = {wish.label for wish in stages[0].wishes}
-    tracks += _labels(stages, [s for s in spots if s.point not in named], scale, closed)
+    tracks += _labels(stages, arrows, [s for s in spots if s.point not in named], scale, closed)
     return _framed(tracks, keys, scale)
 
 
@@ -428,10 +428,16 @@ def _arrow_tracks(arrow: Arrow, scale: float) -> list[MotionTrack]:
 
 
 def _labels(
-    stages: Sequence[_Stage], spots: Sequence[TracedPoint], scale: float, closed: bool
+    stages: Sequence[_Stage],
+    arrows: Sequence[Arrow],
+    spots: Sequence[TracedPoint],
+    scale: float,
+    closed: bool,
 ) -> list[MotionTrack]:
     """Return the tracks of the labels, which move with their elements."""
-    segments = _segments([stage.ink for stage in stages])
+    drawn = _segments([stage.ink for stage in stages])
+    shafts = [(arrow.p * scale, (arrow.p + np.nan_to_num(arrow.v)) * scale) for arrow in arrows]
+    starts, ends = (np.hstack([drawn[k], *(shaft[k][:, None] for shaft in shafts)]) for k in range(2))
     count = min(len(stage.wishes) for stage in stages)
     rows = [[stage.wishes[i] for stage in stages] for i in range(count)]
     rows += [[LabelRequest(s.point, z * scale, 1j, 1.2, NAMES) for z in s.p] for s in spots]
@@ -445,7 +451,7 @@ def _labels(
             point=point,
             is_label=True,
         )
-        for row, centres, point in zip(rows, ride(rows, segments, closed), points, strict=True)
+        for row, centres, point in zip(rows, ride(rows, (starts, ends), closed), points, strict=True)
     ]
 
 

@@ -55,18 +55,16 @@ def moving_svg(
 _FEW_LABELS = 5  #: of a still that has room for them
 
 
-def still_svgs(
-    displayed: MovingDrawing, instants: Sequence[int], *, title: str, words: str, lang: str
-) -> tuple[str, ...]:
-    """Return the drawing at some instants as SVG; only the first has the legend and, where labels would
-    crowd, the labels."""
+def still_svgs(displayed: MovingDrawing, *, title: str, words: str, lang: str) -> tuple[str, ...]:
+    """Return the drawing at each of its few instants as SVG; only the first has the legend and, where labels
+    would crowd, the labels."""
     everything = displayed.tracks
     drawn = [track for track in everything if not track.key]
     bare = [track for track in drawn if not track.is_label]
     others = drawn if len(drawn) - len(bare) <= _FEW_LABELS else bare
     return tuple(
-        _document(displayed, (t.svg(instant) for t in (others if k else everything)), title, words, lang)
-        for k, instant in enumerate(instants)
+        _document(displayed, (t.svg(k) for t in (others if k else everything)), title, words, lang)
+        for k in range(len(everything[0].numbers))
     )
 
 

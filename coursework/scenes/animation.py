@@ -208,31 +208,31 @@ class Animation(Reel):
         self,
         effects: Sequence[str],
         paper_mm: tuple[float, float] = PAPER_MM,
-        frames: Sequence[tuple[Element, ...]] | None = None,
+        instants: Sequence[int] = (),
     ) -> MovingDrawing:
-        """Return the drawing over all instants with the vectors and paths of these effects, in a box of this
-        size.
-
-        ``frames`` replace the animation's own.
+        """Return the drawing with the vectors and paths of these effects, in a box of this size: over all
+        instants, or at a few, without the letters of lengths and angles, since the box has no room for them.
         """
+        at: slice | list[int] = list(instants) or slice(None)
+        frames = [_without_sizes(self.frames[k]) for k in instants] or self.frames
         arrows, spots = [], []
         for name, effect, v in self._vectors:
             if effect in effects and effect in self.scales:
                 displayed = np.full(v.shape, complex(np.nan, np.nan))
                 displayed[self._inside] = v[self._inside] / self.scales[effect]
-                arrows.append(Arrow(self.points[name].position, displayed, effect, name))
+                arrows.append(Arrow(self.points[name].position[at], displayed[at], effect, name))
         if "position" in effects:
             spots = [
-                TracedPoint(point.position, name, self.closed, self._paths[name])
+                TracedPoint(point.position[at], name, self.closed, self._paths[name])
                 for name, point in self.points.items()
             ]
         keys = self._keys({a.effect for a in arrows})
         return drawing(
-            frames or self.frames,
+            frames,
             arrows=arrows,
             spots=spots,
             keys=keys,
-            closed=self.closed,
+            closed=self.closed and not instants,
             paper_mm=paper_mm,
         )
 
@@ -283,15 +283,10 @@ class Animation(Reel):
 
     def stills(self, count: int, paper_mm: tuple[float, float]) -> tuple[str, ...]:
         """Return ``count`` instants of the cycle as SVG, evenly spread, the statement's first, each in a box
-        of this size.
-
-        Letters of lengths and angles are left out, since the box has no room for them.
-        """
-        frames = [_without_sizes(frame) for frame in self.frames]
-        displayed = self.drawing(self.effects, paper_mm, frames)
-        turned = [self._instant_after(k / count) for k in range(count)]
-        text = {"title": self.title, "words": self.words, "lang": self.variant.lang}
-        return still_svgs(displayed, turned, **text)
+        of this size."""
+        instants = [self._instant_after(k / count) for k in range(count)]
+        displayed = self.drawing(self.effects, paper_mm, instants)
+        return still_svgs(displayed, title=self.title, words=self.words, lang=self.variant.lang)
 
     def _instant_after(self, share: float) -> int:
         """Return the instant nearest to a share of the cycle after the first."""

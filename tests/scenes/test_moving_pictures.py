@@ -129,32 +129,56 @@ def test_the_same_variant_gives_the_same_bytes(name):
     assert one.html() == other.html()
 
 
-@few_moving
-def test_labels_on_the_move_lie_on_no_label_and_hardly_ever_on_a_line(name, monkeypatch):
-    """Counted at every instant; a label that a line must pass under has a white rim."""
+@pytest.fixture
+def ridden(monkeypatch):
+    """The labels of the last drawing: half sides of boxes, centres at every instant, what is drawn."""
     seen = {}
 
     def spy(rows, segments, closed):
-        seen["rows"], seen["segments"] = rows, segments
-        seen["centres"] = ride(rows, segments, closed)
+        seen["half"] = np.array([read(row[0].label).box for row in rows]) / 2
+        seen["segments"], seen["centres"] = segments, np.array(ride(rows, segments, closed))
         return seen["centres"]
 
     monkeypatch.setattr("coursework.figures.moving.ride", spy)
-    COURSE[name].variant(1).animation().drawing(("position",))
-    centres = np.array(seen["centres"])
-    half = np.array([read(row[0].label).box for row in seen["rows"]]) / 2
+    return seen
+
+
+def _on_one_another(half, centres):
+    """Whether one label lies on another: label, other, instant."""
     reach = half[:, None, :] + half[None, :, :]
     between = centres[:, None] - centres[None, :]
     meets = (abs(between.real) < reach[..., :1]) & (abs(between.imag) < reach[..., 1:])
     meets[range(len(half)), range(len(half))] = False
-    assert meets.mean() < 0.001
-    a, b = seen["segments"]
+    return meets
+
+
+def _on_lines(half, centres, segments):
+    """Whether a label lies on something drawn: label, instant."""
+    a, b = segments
     steps = np.linspace(0.0, 1.0, 41)
-    on_line = []
     for place, (wide, tall) in zip(centres, half, strict=True):
         off = (a[..., None] + (b - a)[..., None] * steps) - place[:, None, None]
-        on_line.append(((abs(off.real) < wide) & (abs(off.imag) < tall)).any(axis=(1, 2)))
-    assert np.mean(on_line) < 0.06
+        yield ((abs(off.real) < wide) & (abs(off.imag) < tall)).any(axis=(1, 2))
+
+
+@few_moving
+def test_labels_on_the_move_lie_on_no_label_and_hardly_ever_on_a_line(name, ridden):
+    """Counted at every instant; a label that a line must pass under has a white rim."""
+    COURSE[name].variant(1).animation().drawing(("position",))
+    assert _on_one_another(ridden["half"], ridden["centres"]).mean() < 0.001
+    assert np.mean(list(_on_lines(**ridden))) < 0.06
+
+
+@pytest.mark.parametrize(("name", "seed"), [("havens_planetary", 2), ("quick_return_whitworth", 2)])
+def test_names_of_a_still_lie_on_no_other_name_and_on_no_vector(name, seed, ridden):
+    moved = COURSE[name].variant(seed).animation(("velocity",))
+    moved.stills(4, (82.0, 60.0))
+    half, centres = ridden["half"], ridden["centres"]
+    assert centres.shape[1] == 4
+    assert not _on_one_another(half, centres).any()
+    # The vectors come last; a crowded picture has names at its first instant alone.
+    vectors = tuple(ends[:1, -len(moved.points) :] for ends in ridden["segments"])
+    assert not np.any(list(_on_lines(half, centres[:, :1], vectors)))
 
 
 def test_guides_stand_still_and_a_sense_of_rotation_does_not_jump():

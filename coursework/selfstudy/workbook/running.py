@@ -102,13 +102,16 @@ def _call(folder: Folder, lesson: str, name: str) -> Any:
 def _moving(frames: Sequence[Figure], text: str, caption: str, lang: str) -> DrawnPiece:
     """Return figures in a cycle, the first after the last."""
     elements, count = [frame.elements for frame in frames], len(frames)
-    displayed, small = drawing(elements), drawing(elements, paper_mm=_CELL)
+    displayed = drawing(elements)
+    small = drawing(
+        [elements[round(k * count / STILLS) % count] for k in range(STILLS)], closed=False, paper_mm=_CELL
+    )
     entries = {"title": text, "words": text, "lang": lang}
     return DrawnPiece(
         text,
         caption,
         svg=moving_svg(displayed, order=[*range(count), 0], first=0, seconds=SECONDS, **entries),
-        stills=still_svgs(small, [round(k * count / STILLS) % count for k in range(STILLS)], **entries),
+        stills=still_svgs(small, **entries),
     )
 
 
