@@ -324,7 +324,7 @@ def test_numbers_that_do_not_close_name_the_joint_and_what_is_missing(name, give
     bodies, joints = place.split(" at ")
     for lang, said, missing in (
         ("en", f"bodies {bodies} do not meet at {joints}: ", r"\(gap ([\d.e+]+) mm\)"),
-        ("fr", f"les solides {bodies} ne se rejoignent pas en {joints}\u202f: ", r"\(écart ([\d.e+]+) mm\)"),
+        ("fr", f"les pièces {bodies} ne se rejoignent pas en {joints}\u202f: ", r"\(écart ([\d.e+]+) mm\)"),
     ):
         told = localised(caught.value, lang)
         assert told.startswith(said)

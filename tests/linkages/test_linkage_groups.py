@@ -11,7 +11,7 @@ import numpy as np
 
 from coursework import open_course
 
-FILE = """title = {{ en = "Pair of bodies", fr = "Paire de solides" }}
+FILE = """title = {{ en = "Pair of bodies", fr = "Paire de pièces" }}
 [given]
 theta2 = {{ from = "10 deg", to = "80 deg", step = "5 deg" }}
 omega2 = "3 rad/s"

@@ -242,7 +242,7 @@ def test_a_drawing_says_what_is_wrong_without_its_file_first():
     view = mechanism_view(drawn, "mine", "fr")
     assert (
         view.problem
-        == "le solide 3 ne tient qu’en A ; il faut un second point commun ou une glissière pour le tenir"
+        == "la pièce 3 ne tient qu’en A ; il faut un second point commun ou une glissière pour la tenir"
     )
     assert re.fullmatch(r"mine\.toml, ligne \d+", view.place)
     assert mechanism_view("# drawing: {}\ntitle = 'x'\n", "mine", "fr").problem.startswith(
