@@ -62,6 +62,9 @@ def test_an_entry_as_it_is_printed_is_the_entry_of_the_list(course):
     assert [e for e, key in keys.items() if key.replace("\N{NO-BREAK SPACE}", " ") != bare_letters(e)] == []
 
 
+ARTICLE = re.compile(r"(?:An?|The|Une?|Les?|La) |L['’]")
+
+
 def test_the_index_has_four_hundred_entries_and_references_lead_to_them(course):
     folder, faults = course.folder, []
     for lang in folder.languages:
@@ -79,6 +82,8 @@ def test_the_index_has_four_hundred_entries_and_references_lead_to_them(course):
             one.entry for one in machine_entries(folder, lang) if not one.exercises and one.entry not in met
         ]
         faults += [f"{lang}: no lesson speaks of {one}" for one in machines]
+        titles = [course[name].title(lang) for name in folder.names]
+        faults += [f"{lang}: {title} is sorted by its article" for title in titles if ARTICLE.match(title)]
         people = {one.entry for one in sought if one.list == "word" and ", " in one.entry}
         if len(met | people) + len(see) + len(folder.names) < 400:
             faults.append(f"{lang}: {len(met | people)} entries and {len(see)} references")
