@@ -802,7 +802,7 @@ def symbol_of(name: str) -> str:
     match = re.fullmatch(r"([A-Za-z]+?)(\d+[A-Z]?\d*|[A-Z]\d*)?", stem)
     letters, index = match.groups() if match else (stem, None)
     if letters in _GREEK:
-        letters = "\\" + letters
+        letters = r"\varepsilon" if letters == "epsilon" else "\\" + letters
     elif len(letters) > 1:
         letters = rf"\mathrm{{{letters}}}"
     if dots:

@@ -11,7 +11,8 @@ is needed first.
     needs = ["structure"]
     exercises = ["circles", { name = "linkage", needs = ["bars"] }]
 
-A section has a lesson, whose title it bears, or a ``title`` of its own, or neither. Whatever is needed first
+A section has a lesson, whose title it bears, or a ``title`` of its own, or neither. ``appendix = true`` makes
+a chapter an appendix of the book. Whatever is needed first
 stands earlier.
 """
 
@@ -19,6 +20,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from string import ascii_uppercase
 from typing import Any
 
 from coursework.errors import BadCourse, nearest
@@ -56,6 +58,7 @@ class Chapter:
     number: int
     titles: Mapping[str, str]
     sections: tuple[ChapterSection, ...]
+    appendix: str = ""  #: its letter, where it is one
 
     def title(self, lang: str) -> str:
         """Its title, in another language where it has none in this."""
@@ -91,14 +94,17 @@ def chapters(
     """
     if not isinstance(stated, list) or not all(isinstance(entry, Mapping) for entry in stated):
         raise BadCourse(f"{source}: chapters: write {_FORM}; found {stated!r}")
-    result = tuple(_chapter(k, entry, f"{source}: chapter {k}") for k, entry in enumerate(stated, start=1))
+    letters = iter(ascii_uppercase)
+    result = tuple(
+        _chapter(k, entry, f"{source}: chapter {k}", letters) for k, entry in enumerate(stated, start=1)
+    )
     _check_names(result, exercises, lessons, source)
     _check_order(result, source)
     return result
 
 
-def _chapter(number: int, stated: Mapping[str, Any], where: str) -> Chapter:
-    _only(stated, {"title", "sections"}, where)
+def _chapter(number: int, stated: Mapping[str, Any], where: str, letters: Iterator[str]) -> Chapter:
+    _only(stated, {"title", "sections", "appendix"}, where)
     sections = stated.get("sections", [])
     if not isinstance(sections, list) or not all(isinstance(entry, Mapping) for entry in sections):
         raise BadCourse(f"{where}: sections: write {_FORM}; found {sections!r}")
@@ -109,6 +115,7 @@ def _chapter(number: int, stated: Mapping[str, Any], where: str) -> Chapter:
         number,
         titles,
         tuple(_section(entry, f"{where}, section {k}") for k, entry in enumerate(sections, start=1)),
+        next(letters) if stated.get("appendix") else "",
     )
 
 

@@ -146,6 +146,7 @@ def to_typst_markup(markdown: str, lang: str) -> str:
     return _block(tree(markdown), lang)
 
 
+_NUMBER_LAST = re.compile(r"(?:^|[=\s{])[\d.,]+\}?\s*$")  #: of a formula
 #: A number and its unit.
 _VALUE = re.compile(r"\$\\num\{[^{}]*\}(?:\^\{\\circ\}|\\ \\mathrm\{(?:[^{}]|\{\d\})*\})?\$")
 
@@ -156,6 +157,11 @@ def typst_value(markdown: str, lang: str) -> str:
     if _VALUE.fullmatch(markdown):
         return typst_text(to_text(markdown, lang), lang)
     return to_typst_markup(markdown, lang)
+
+
+def _follows_number(node: SyntaxTreeNode) -> bool:
+    before = node.previous_sibling
+    return before is not None and before.type == "math_inline" and bool(_NUMBER_LAST.search(before.content))
 
 
 def _block(node: SyntaxTreeNode, lang: str) -> str:
@@ -180,7 +186,9 @@ def _typst(node: SyntaxTreeNode, lang: str) -> str:
         case "paragraph":
             return f"#lead[{inside()}]\n\n" if _leads(node) else inside() + "\n\n"
         case "text":
-            return typst_text(node.content, lang)
+            # A unit keeps to its number, though that is a formula of its own.
+            number = _follows_number(node)
+            return typst_text("0" * number + node.content, lang)[number:]
         case "softbreak":
             return "\n"
         case "hardbreak":

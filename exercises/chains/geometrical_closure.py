@@ -129,7 +129,6 @@ EXERCISE = Exercise(
         "perpendicular": r"\mathrm{perpendicular}",
         "angular": r"\mathrm{angular}",
         "closure_angle": r"\mathrm{closure}_{\varepsilon}",
-        "epsilon": r"\varepsilon",
         "closure_y": r"\mathrm{closure}_y",
         "closure_z": r"\mathrm{closure}_z",
         "law": r"\mathrm{law}",

@@ -93,6 +93,15 @@ def test_a_formula_alone_is_written_as_in_a_text(tex):
     assert to_typst_markup(f"${tex}$", "fr") == to_typst_markup(f"${tex}$ et", "fr").removesuffix(" et")
 
 
+@each_row(
+    ("formula", "kept"),
+    [("r = 140", True), (r"\num{0.4}", True), ("r_2", False), ("x^2", False), ("r", False)],
+)
+def test_a_unit_keeps_to_the_number_that_a_formula_ends_with(formula, kept):
+    written = to_typst_markup(f"With ${formula}$ mm of play", "en")
+    assert written.endswith(f"{chr(0xA0) if kept else ' '}mm of play")
+
+
 def test_a_notebook_keeps_formulas_and_code_as_they_are_but_for_numbers():
     assert to_notebook_markdown(r"a $x < \num{1.5}$ `$\num{2.5}$` < b", "fr") == (
         r"a $x \lt  1{,}5$ `$\num{2.5}$` &lt; b"

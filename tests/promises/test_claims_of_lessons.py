@@ -322,7 +322,7 @@ def a_plate_taken_for_two_bars_passes_the_check_of_unknowns(course):
 # -- positions ---------------------------------------------------------------------------------------------
 
 
-@claim("positions", r"The doubt of $\num{0.19}°$", r"Le doute de $\num{0.19}°$")
+@claim("positions", r"The uncertainty of $\num{0.19}°$", r"L'incertitude de $\num{0.19}°$")
 def at_a_right_angle_the_direction_of_the_coupler_is_off_by_the_error_of_the_other_radius(course):
     r3, r4, error = 90.0, 70.0, 0.3
     bars = {"r1": float(np.hypot(r3, r4)) + 30, "r2": 30.0, "theta2": 0.0}

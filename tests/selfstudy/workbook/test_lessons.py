@@ -62,6 +62,10 @@ def numbers(told):
     return sorted(re.findall(r"\d+(?:[.,]\d+)?", printed.replace(",", ".").replace("{.}", ".")))
 
 
+#: What a cell prints in columns, once it is a line of an answer: a value, and another at once.
+COLUMNS = re.compile(r"^- .*= −?[\d.,]*\d(?: ?[a-zµ°/²]{1,5})? (?:\d|[^\W\d_]\S* =).*$", re.MULTILINE)
+
+
 @pytest.mark.parametrize("name", sampled(LESSONS, ["positions"]))
 def test_a_lesson_is_read_drawn_and_run_and_is_the_same_in_every_language(course, name):
     assert faults(course, name) == ()
@@ -73,6 +77,8 @@ def test_a_lesson_is_read_drawn_and_run_and_is_the_same_in_every_language(course
             assert getattr(piece, "caption", "told") or not piece.number, piece.said
         said = re.sub(r"\$+[^$]*\$+", "", "\n".join(prints(one)))
         assert re.findall(r".*(?<![\w.)-])-\d.*", said) == []
+        answers = "\n".join(p.text for _, found in one.answers for p in found if isinstance(p, Prose_))
+        assert COLUMNS.findall(answers) == [], "an answer is a sentence, not a row of a table"
     if name != "accuracy":  # which has times
         assert numbers(told["en"]) == numbers(told["fr"])
     said = re.sub(r"\$+[^$]*\$+", "", " ".join(prints(told["fr"])))

@@ -20,10 +20,12 @@ import coursework
 from coursework.cli import run
 from coursework.errors import BadCourse, BadInput, UnknownName
 from coursework.language.words import languages
+from coursework.rendering.books import typst_source
 from coursework.rendering.renderer import renderer_of
 from coursework.selfstudy.workbook.binding import bound
 from coursework.selfstudy.workbook.files import files, lesson_notebook
 from coursework.selfstudy.workbook.lessons import faults, lesson_text
+from coursework.sheets.answer_sheet import answer_sheet
 from coursework.sheets.book import Book, BookChapter, BookExercise, BookSection
 from coursework.sheets.handout import handout
 from coursework.site.lessons.lesson_content import render_lesson
@@ -257,6 +259,24 @@ def test_the_list_of_symbols_has_the_same_symbols_in_every_language(course):
     assert len(first) > len(course.folder.names)
 
 
+@pytest.mark.slow
+@pytest.mark.parametrize("lang", languages())
+def test_paper_prints_the_symbols_that_equations_are_typed_with(course, lang):
+    """Nobody types on paper: a code that is the name of a symbol is printed as this symbol."""
+    typed = [name for name in course.folder.names if any(part.variables for part in course[name].spec.parts)]
+    asked = tuple(
+        BookExercise(str(k), handout(variant), answer_sheet(variant))
+        for k, variant in enumerate(course[name].variant(3, lang) for name in typed)
+    )
+    book = Book(lang, "", 0, (BookChapter(1, "", (BookSection(None, asked),)),), True)
+    source = typst_source(renderer_of(course.folder).template_folders, book)
+    codes = set(re.findall(r'#raw\("(.*?)"\)', source))
+    names = {name for one in typed for part in course[one].spec.parts for name in part.variables}
+    assert {"phi_dot", "theta3"} <= names
+    assert codes & names == set()
+    assert "dot(ϕ)" in source
+
+
 class _Pages(HTMLParser):
     """The places that a page leads to, and those that it has."""
 
@@ -337,6 +357,18 @@ def test_a_section_without_a_lesson_bears_its_title(folder):
     pages = page_texts(found["workbook.en.pdf"])
     assert [k for k, page in enumerate(pages) if "More & more" in page][:1] == [1]
     assert sum("More & more" in page for page in pages) == 2
+
+
+def test_a_chapter_may_be_an_appendix(folder):
+    settings = folder / "exercises/course.toml"
+    titled = '[[chapters]]\ntitle = { en = "Pins"'
+    now = settings.read_text("utf-8").replace(titled, titled.replace("\n", "\nappendix = true\n"))
+    settings.write_text(now, "utf-8")
+    found = made(coursework.open_course(folder), formats=["pdf", "html"])
+    assert "<h2>A. Pins</h2>" in found["pages/index.html"].decode()
+    text = " ".join(page_texts(found["workbook.en.pdf"]))
+    assert "Appendix A. Pins" in text
+    assert "Chapter 1" not in text
 
 
 def test_no_page_ends_with_what_stands_above_other_lines(folder):
