@@ -186,9 +186,38 @@ def test_a_paper_is_gone_when_it_closes_and_reviewing_without_a_network_stays(pl
     page.fill("[name=e1-rA]", "5")
     page.context.set_offline(True)
     page.click(".bar .main")
-    page.wait_for_selector("[data-kept]:has-text('No connection')")
+    page.wait_for_selector("[data-kept]:has-text('nothing was sent')")
     assert (page.url, page.input_value("[name=e1-rA]")) == (paper, "5")
     page.wait_for_timeout(12_500)
     assert "No network" in offline_text(page, paper)
     assert of_person(page) == 0
+    page.context.close()
+
+
+@pytest.mark.e2e
+def test_who_presses_without_a_network_is_told_and_presses_again(place):
+    """A form, and a page whose pieces come one by one; nothing is told to another page that is open."""
+    number = dealt(place[0])
+    page = opened(place, MAX, f"/assignments/{number}")
+    page.fill("[name=e1-rA]", "5")
+    page.click(".bar .main")
+    page.wait_for_url("**/read-back")
+    other = page.context.new_page()
+    other.goto(f"{place[1]}/assignments/{number}")
+    page.context.set_offline(True)
+    for _ in range(2):
+        page.click(".bar .main")
+        page.wait_for_selector(".not-sent:has-text('nothing was sent')")
+    assert page.locator(".not-sent").count() == 1
+    assert "nothing was sent" not in other.inner_text("[data-kept]")
+    page.context.set_offline(False)
+    page.click(".bar .main")
+    page.wait_for_url("**/receipts/*")
+    page.goto(f"{place[1]}/explore/four_bar_motion")
+    page.context.set_offline(True)
+    page.fill("#of-r2", "60")
+    page.wait_for_selector("#explore .not-sent")
+    page.context.set_offline(False)
+    page.fill("#of-r2", "61")
+    page.wait_for_selector("#explore .not-sent", state="detached")
     page.context.close()

@@ -26,7 +26,7 @@
   // -------------------------------------------------------------- pieces that come
   let pressed = null;
   form.addEventListener("submit", (event) => { pressed = event.submitter; });
-  document.body.addEventListener("htmx:sendError", (event) => { if (!isRead(event)) give("tell", { text: said.not_checked }); });
+  document.body.addEventListener("htmx:sendError", (event) => { if (!isRead(event)) give("tell", { text: said.not_sent }); });
   document.body.addEventListener("htmx:responseError", (event) => {
     if ([401, 403].includes(event.detail.xhr.status) && !isRead(event)) give("renew");
   });

@@ -13,18 +13,33 @@
   }
   if (times.length) document.querySelectorAll("[data-zone-said]").forEach((one) => { one.hidden = true; });
 
-  // Pages that were seen open without a network, too; a form that meets none stays, and tells so.
-  const offline = () => document.querySelectorAll("form[data-keep]").forEach((form) => {
-    form.dispatchEvent(new CustomEvent("keep:tell", { detail: { text: JSON.parse(form.dataset.keepWords).offline } }));
-  });
+  // Pages that were seen open without a network, too; a form that meets none stays, and says that nothing was sent.
+  let pressed = null;
+  function unsent(form) {
+    if (form.dataset.keep) { form.dispatchEvent(new CustomEvent("keep:tell", { detail: { text: JSON.parse(form.dataset.keepWords).not_sent } })); return; }
+    const said = form.querySelector(".not-sent") || document.createElement("p");
+    said.className = "notice not-sent";
+    said.setAttribute("role", "alert");
+    form.append(said);
+    said.textContent = document.body.dataset.notSent;
+    said.scrollIntoView({ block: "nearest" });
+  }
   document.addEventListener("submit", (event) => {
-    if (navigator.onLine || !event.target.matches("form[data-keep]:not([hx-post])")) return;
+    const form = event.target;
+    if (form.method !== "post" || form.matches("[hx-post]")) return;
+    pressed = form;
+    if (navigator.onLine || (navigator.serviceWorker && navigator.serviceWorker.controller)) return;
     event.preventDefault();
-    offline();
+    unsent(form);
   });
+  document.addEventListener("htmx:sendError", ({ target }) => {
+    const form = target.closest("form:not([data-keep], .blanks)");  // sheets and lessons tell it themselves
+    if (form) unsent(form);
+  });
+  document.addEventListener("htmx:beforeSwap", () => document.querySelectorAll(".not-sent").forEach((one) => one.remove()));
   const workers = window.isSecureContext && navigator.serviceWorker;
   if (workers && document.body.dataset.person) {
-    workers.addEventListener("message", (event) => { if (event.data.offline) offline(); });
+    workers.addEventListener("message", (event) => { if (event.data.offline && pressed) unsent(pressed); });
     const isNew = !workers.controller;
     workers.register("/service-worker.js").then(() => workers.ready).then((one) => {
       const files = performance.getEntriesByType("resource").map((file) => file.name).filter((name) => name.startsWith(location.origin + "/static/"));
