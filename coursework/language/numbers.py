@@ -30,7 +30,7 @@ def with_minus_signs(text: str) -> str:
 def typed_number(text: str) -> float:
     """Return a number that somebody typed, with a decimal point or comma; NaN if it is none."""
     try:
-        return float(text.replace(",", "."))
+        return float(text.replace(",", ".").replace(MINUS, "-"))
     except ValueError:
         return math.nan
 

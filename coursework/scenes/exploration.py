@@ -19,7 +19,7 @@ from coursework.figures.base import Element
 from coursework.figures.elements import ground_pivot, link, pin
 from coursework.figures.marks import arc, note, trace
 from coursework.figures.moving import Arrow, MovingDrawing, TracedPoint, drawing
-from coursework.language.numbers import settled
+from coursework.language.numbers import settled, typed_number
 from coursework.model import GivenSpec
 from coursework.quantities.graph import Graph
 from coursework.scenes.animation import Animation, turning_arm
@@ -48,11 +48,12 @@ class Parameter:
         """Return the value that a text states, within the bounds; None for a text that states none."""
         if self.choices:
             return text if text in self.choices else None
-        try:
-            number = float(text[:_LONGEST].strip().replace(",", ".").replace("−", "-"))
-        except ValueError:
-            return None
+        number = typed_number(text[:_LONGEST])
         return min(max(number, self.low), self.high) if math.isfinite(number) else None
+
+    def is_beyond(self, text: str) -> bool:
+        """Return True if a text states a number beyond the bounds, of which the nearer is taken."""
+        return self.value(text) in (self.low, self.high) and typed_number(text[:_LONGEST]) != self.value(text)
 
 
 _LONGEST = 24  #: letters of a number

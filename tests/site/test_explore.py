@@ -26,7 +26,7 @@ def site(tmp_path_factory):
 
 
 def box(page, name):
-    return unescape(re.search(rf'<input type="number" id="of-{name}"[^>]* value="([^"]*)"', page)[1])
+    return unescape(re.search(rf'<input type="text" id="of-{name}"[^>]* value="([^"]*)"', page)[1])
 
 
 @at_once([name for name in DRIVEN if name != EXERCISE], DRIVEN[::5])
@@ -71,6 +71,25 @@ def test_what_does_not_close_is_a_page_that_says_by_how_much(browser_of):
     assert "closes at no angle" in words_of(nowhere.text)
 
 
+def test_what_is_typed_is_read_in_either_language_and_its_bounds_are_told(browser_of):
+    for lang, typed, shown, told in (
+        ("en", "60.5", "60.5", "r 2 goes from 20 to 190 mm here."),
+        ("fr", "60,5", "60,5", "r 2 va ici de 20 à 190 mm."),
+    ):
+        found = {}
+        for text in (typed, "190", "400", "−5"):
+            page = browser_of(ZOE).get(
+                f"/explore/four_bar_motion?r2={quote(text)}", headers={"accept-language": lang}
+            ).text
+            found[text] = box(page, "r2"), told in words_of(page)
+        assert found == {
+            typed: (shown, False),
+            "190": ("190", False),
+            "400": ("190", True),
+            "−5": ("20", True),
+        }
+
+
 HOSTILE = [
     "r1=nan",
     "r1=inf",
@@ -103,7 +122,7 @@ def test_whatever_an_address_says_is_bounded(query, browser_of):
     reply = browser_of(ZOE).get(f"/explore/four_bar_motion?{query}")
     assert reply.status_code == 200
     assert "alert(1)" not in reply.text
-    numbers = re.findall(r'type="number"[^>]* min="([^"]+)" max="([^"]+)"[^>]* value="([^"]+)"', reply.text)
+    numbers = re.findall(r'type="range"[^>]* min="([^"]+)" max="([^"]+)"[^>]* value="([^"]+)"', reply.text)
     assert len(numbers) == 7
     assert all(float(low) <= float(value) <= float(high) for low, high, value in numbers)
 

@@ -68,6 +68,17 @@ def test_a_slider_changes_figure_and_plots_in_place(window, size, lang):
     page.fill("#of-r3", "40")
     page.wait_for_selector(".explored-told .gap")
     assert page.locator("#explored svg").count() == 1
+    bounds = page.locator("#explore [data-of=of-r2]")
+    page.fill("#of-r2", "4000")
+    told = f".explored-told :text('{'va ici de' if lang == 'fr' else 'goes from'}')"
+    page.wait_for_selector(told)
+    assert bounds.input_value() == bounds.get_attribute("max")
+    value = "60,5" if lang == "fr" else "60.5"
+    page.fill("#of-r2", value)
+    page.wait_for_selector(told, state="detached")
+    assert f"r2={value.replace(',', '%2C')}" in page.url
+    assert abs(float(bounds.input_value()) - 60.5) <= float(bounds.get_attribute("step"))
+    value = page.input_value("#of-r2")
     assert (too_wide(page), serious(page)) == (0, [])
     page.reload()
     assert page.input_value("#of-r2") == value

@@ -54,6 +54,7 @@ def explore(request: Request) -> Response:
         "explored": shown,
         "is_piece": request.is_fragment,
         "rows": [_row(request, typical, p, values[p.name]) for p in choices],
+        "beyond": [_bounds(request, typical, p) for p in choices if p.is_beyond(texts[p.name])],
         "refused": [typical.exercise.symbol(n) for n, value in read.items() if value is None],
         "address": f"/explore/{name}",
         "mechanism": address_of(request, name),
@@ -216,7 +217,15 @@ def _row(request: Request, typical: Any, parameter: Parameter, value: Any) -> di
         cases = [(case, typical.label(parameter.name, case)) for case in parameter.choices]
         return {**row, "value": value, "cases": cases}
     bounds = {n: plain(getattr(parameter, n)) for n in ("low", "high", "step")}
-    return {**row, "value": plain(round(float(value), 6)), **bounds, "cases": ()}
+    number = plain(round(float(value), 6))
+    return {**row, "value": number, "shown": localise(number, request.lang), **bounds, "cases": ()}
+
+
+def _bounds(request: Request, typical: Any, parameter: Parameter) -> tuple[str, str, str]:
+    """Return the symbol of a parameter and its bounds as they are read, the upper one with its unit."""
+    low, high = (localise(plain(bound), request.lang) for bound in (parameter.low, parameter.high))
+    unit = unit_text(parameter.unit, request.lang)
+    return typical.exercise.symbol(parameter.name), low, f"{high}{'' if unit == '°' else ' '}{unit}".strip()
 
 
 ROUTES = (Route("/explore/{exercise}", explore, Permission.OWN, limit="explore"),)

@@ -4,11 +4,19 @@
   "use strict";
   const form = document.getElementById("explore"), driver = form && [...form.querySelectorAll("[data-of]")].shift();
   if (!form) return;
+  const boxOf = (slider) => document.getElementById(slider.dataset.of);
+  const show = (slider) => { boxOf(slider).value = document.documentElement.lang === "fr" ? slider.value.replace(".", ",") : slider.value; };
+  let typing = 0;
   form.querySelectorAll("input[type=range]").forEach((slider) => {
-    const box = document.getElementById(slider.dataset.of);
     slider.hidden = false;
-    slider.addEventListener("input", () => { box.value = slider.value; });
-    box.addEventListener("input", () => { if (box.value !== "") slider.value = box.value; });
+    slider.addEventListener("input", () => show(slider));
+    boxOf(slider).addEventListener("input", (event) => {
+      const number = Number(event.target.value.replace(",", ".").replace("−", "-"));
+      if (event.target.value.trim() && !isNaN(number)) slider.value = number;
+      event.stopPropagation();  // the beginning of a number is none
+      clearTimeout(typing);
+      typing = setTimeout(() => form.dispatchEvent(new Event("turned")), 500);
+    });
   });
 
   // The figure is another one after each change: what is held is remembered here.
@@ -43,7 +51,7 @@
     const now = heading(ends[0], event.clientX, event.clientY), by = now - held;
     held = now;
     driver.value = ((+driver.value + by - 360 * Math.round(by / 360)) % 360 + 360) % 360;
-    document.getElementById(driver.dataset.of).value = driver.value;
+    show(driver);
     follow(now);
     if (event.timeStamp - sent < 200) return; // a person may ask 400 times a minute
     sent = event.timeStamp;
