@@ -109,7 +109,7 @@ def main(exercise: str) -> None:
         rows.append(("seconds of it by script, on that line", f"{time.perf_counter() - begun:.1f}"))
         context.close()
         context = context_of(browser, class_, address, ZOE, service_workers="block")
-        rows += weighed(context, f"{address}/practice/{DRAWN}", "page to draw on")[1]
+        rows += weighed(context, f"{address}/practice/crank_shaper_drawn", "page to draw on")[1]
         context.close()
         rows += constructed((class_, address, browser))
         for scheme in ("light", "dark"):

@@ -84,7 +84,7 @@ function back(from, to) {
   keep();
 }
 function remove(item) {
-  if (!item) return;
+  if (!item) { tell(said.nothing_here); return; }
   s.marks = []; s.picked = 0;
   change(() => { s.items = s.items.filter(one => one !== item && ![one.from, one.to, ...(one.of || [])].includes(item.id)); });
   tell(said.deleted);

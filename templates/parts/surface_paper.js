@@ -153,11 +153,16 @@ function ghosts(c) {
   return all;
 }
 function rendered() {
-  const apart = [10, 20, 50, 100].find(mm => mm > 34 * unit()), taken = [];  // a name makes way for those before it
+  const apart = [10, 20, 50, 100].find(mm => mm > 34 * unit());
   for (const mark of sheet.querySelectorAll("text")) mark.style.display = +mark.textContent % apart ? "none" : "";
-  for (const name of ink.querySelectorAll("text")) {
+  part(ink.querySelectorAll("text"));
+}
+// A name makes way for those before it.
+function part(names) {
+  const taken = [];
+  for (const name of names) {
     const b = name.getBBox(), { y, height: h } = b;
-    for (const k of [1, -1, 2, -2, 3, -3, 0]) if (taken.some(o => abs(o.y - b.y) < h && o.x < b.x + b.width && b.x < o.x + o.width)) b.y = y + k * h;
+    for (const k of [1, -1, 2, -2, 3, -3, 4, -4, 0]) if (taken.some(o => abs(o.y - b.y) < h && o.x < b.x + b.width && b.x < o.x + o.width)) b.y = y + k * h;
     name.y.baseVal[0].value += b.y - y;
     taken.push(b);
   }
@@ -168,7 +173,7 @@ printed.classList.add("drawn");
 sheet.append(draw("g", { transform: `translate(0 ${-high})` }, ...Array.from(printed.querySelectorAll("svg > g"), one => one.cloneNode(true))));
 if (entry("scale")) entry("scale").value = box(scaled.dataset.scale).value;
 return {
-  edge: 9, isFine: true, boxes: [...names, ...data.scales], called, take, fill, scale, close, laid, tools, ghosts, rendered, stops: crossings,
+  edge: wide > 200 ? wide / 12 : 10, isFine: true, boxes: [...names, ...data.scales], called, take, fill, scale, close, laid, tools, ghosts, rendered, stops: crossings,
   step: () => (unit() > 1 / 12 ? 1 : unit() > 1 / 30 ? 0.5 : 0.1),
   reach: px => px * unit(),
   press(c) { if ((s.tool === "vector" || (s.tool === "compass" && !(radius > 0) && !pair)) && !s.start) s.start = { ...c, fresh: true }; },
@@ -178,7 +183,11 @@ return {
     link(degrees) { aim(+degrees); },
     name: christen,
     pair() { pair = []; radius = 0; show(); },
-    put(n, node) { send(box(n), print(measured(node.dataset.unit))); tell(box(n).value); },
+    put(n, node) {  // once more: the other sign
+      const { unit } = node.dataset, to = box(n), is = print(measured(unit));
+      send(to, to.value === is && unit !== "°" ? `-${is}` : is);
+      tell(`${node.textContent.replace(/[\s→]/g, "")} = ${to.value.replace("-", "−")} ${unit}`);
+    },
     scale(n, node) { scaled = node; entry("scale").value = box(n).value; show(); },
   },
   inputs: {
@@ -194,6 +203,7 @@ return {
   },
   pressed: { "pair]": () => !!pair, "link]": it => way === +it.link, "scale]": it => it === scaled.dataset, "name]": (it, item) => !!item && named(it.name) === item },
   shown() {
+    part(every(".surface-links text"));
     every("[data-name]").forEach(one => one.classList.toggle("placed", !!named(one.dataset.name)));
     every("[data-put]").forEach(one => { one.hidden = measured(one.dataset.unit) == null; });
     get("output").textContent = gauge ? size(gauge) : "";

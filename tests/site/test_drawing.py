@@ -168,3 +168,20 @@ def test_a_drawing_is_among_the_data_of_a_person_and_goes_with_them(class_of_thr
         assert row["text"] == POLYGON
         assert erase(connection, zoe)["drawing"] == 1
         assert connection.execute(select(drawing)).all() == []
+
+
+def test_the_longest_page_to_draw_on_weighs_120_kb_with_all_its_files_and_20_the_next_time(class_of_three):
+    browser = class_of_three.browser(ZOE, "fr")
+
+    def fetched(address):
+        reply = browser.get(address, headers={"accept-encoding": "gzip"})
+        head = sum(len(name) + len(value) + 4 for name, value in reply.headers.items())
+        return reply.text, head + int(reply.headers["content-length"])
+
+    page, weight = fetched(browser.get("/practice/crank_shaper_drawn").headers["location"])
+    files = {file: fetched(file) for file in re.findall(r'"(/static/[^"]+)"', page)}
+    look = next(text for file, (text, _) in files.items() if "look.css" in file)
+    fonts = [fetched(file)[1] for file in re.findall(r'url\("(/static/[^"]+)"', look)]
+    assert (len(files), len(fonts)) == (5, 4)
+    assert weight <= 20_000
+    assert weight + sum(size for _, size in files.values()) + sum(fonts) <= 120_000

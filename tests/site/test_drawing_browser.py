@@ -272,8 +272,8 @@ TYPE = """answers => { for (const [name, text] of Object.entries(answers)) {
 } }"""
 #: Pairs of names in a drawing that lie on each other: of a glyph's box, which is taller than letters, a third
 #: is white.
-OVERLAPPING = """() => {
-  const texts = document.querySelectorAll("[id$=drawing-ink] > g:nth-child(2) text");
+OVERLAPPING = """(place = "[id$=drawing-ink] > g:nth-child(2)") => {
+  const texts = document.querySelectorAll(`${place} text`);
   const names = Array.from(texts, one => [one.textContent, one.getBoundingClientRect()]);
   const meet = (a, b) => Math.min(a.right, b.right) - Math.max(a.left, b.left) > 1
     && Math.min(a.bottom, b.bottom) - Math.max(a.top, b.top) > a.height / 3;
@@ -346,6 +346,64 @@ def test_a_paper_has_a_surface_for_each_exercise_that_is_drawn(desk):
     assert cells(page, "e1-p") == ["90", "40"]
     assert faults == []
     context.close()
+
+
+#: Numbers at the edge of the paper that the surface cuts.
+CUT_NUMBERS = """() => {
+  const room = document.querySelector("[data-surface]").getBoundingClientRect();
+  const numbers = Array.from(document.querySelectorAll("[id$=drawing-ink] > g:first-child text"));
+  return numbers.map((one) => [one.textContent, one.getBoundingClientRect()])
+    .filter(([, b]) => b.width && (b.left < room.left || b.right > room.right)).map(([text]) => text);
+}"""
+
+
+def test_numbers_of_the_paper_and_names_of_links_are_whole_on_the_narrowest_screen(desk):
+    class_, address, browser = desk
+    context, wrong = context_of(browser, class_, address, MAX), {}
+    page = context.new_page()
+    page.set_viewport_size({"width": 320, "height": 640})
+    for name in class_.site.course.names:
+        spec = class_.site.course[name].spec
+        if not (spec.drawing_mm or spec.surface_mm):
+            continue
+        page.goto(f"{address}/practice/{name}")
+        page.evaluate("document.querySelector('[data-tool=parallel]').click()")
+        page.evaluate("new Promise(done => requestAnimationFrame(() => requestAnimationFrame(done)))")
+        if found := [*page.evaluate(CUT_NUMBERS), *page.evaluate(OVERLAPPING, ".surface-links")]:
+            wrong[name] = found
+    context.close()
+    assert wrong == {}
+
+
+def test_what_a_tap_did_stands_in_sight_above_the_end_of_the_screen(pencil):
+    hand = pencil("velocity_polygon")
+    page = hand.page
+    page.set_viewport_size({"width": 390, "height": 560})
+    hand.tool("perpendicular")
+    page.evaluate("""const box = document.querySelector("[data-surface]").getBoundingClientRect();
+        scrollBy({ top: box.bottom - innerHeight, behavior: "instant" })""")
+    hand.touch("touchStart", (200, 400))
+    hand.touch("touchEnd")
+    told = page.locator(".surface-told")
+    assert "direction" in told.inner_text()
+    assert told.bounding_box()["y"] + told.bounding_box()["height"] <= 560
+    hand.tool("delete")
+    hand.tap(100 + 30j)
+    assert told.inner_text() == "There is nothing here."
+
+
+def test_a_measured_rate_takes_its_sign_from_a_second_tap(pencil):
+    hand = pencil("velocity_polygon_slider")
+    assert {"decimal"} == set(hand.page.eval_on_selector_all("[data-in]", "all => all.map(n => n.inputMode)"))
+    hand.enter("scale", 10)
+    hand.dot(40 + 40j, "p")
+    hand.dot(70 + 40j, "b")
+    hand.measure(40 + 40j, 70 + 40j)
+    values = []
+    for _ in range(3):
+        hand.press("[data-put=r1_dot]")
+        values.append((hand.answers()["r1_dot"], hand.page.inner_text(".surface-told").split(" = ")[1]))
+    assert values == [("300", "300 mm/s"), ("-300", "−300 mm/s"), ("300", "300 mm/s")]
 
 
 _MIDDLE = "n => { const b = n.getBoundingClientRect(); return [b.x + b.width / 2, b.y + b.height / 2]; }"

@@ -78,9 +78,8 @@ def test_what_is_typed_is_read_in_either_language_and_its_bounds_are_told(browse
     ):
         found = {}
         for text in (typed, "190", "400", "−5"):
-            page = browser_of(ZOE).get(
-                f"/explore/four_bar_motion?r2={quote(text)}", headers={"accept-language": lang}
-            ).text
+            address = f"/explore/four_bar_motion?r2={quote(text)}"
+            page = browser_of(ZOE).get(address, headers={"accept-language": lang}).text
             found[text] = box(page, "r2"), told in words_of(page)
         assert found == {
             typed: (shown, False),

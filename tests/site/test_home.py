@@ -56,8 +56,8 @@ def test_shared_files_are_kept_by_browsers(class_of_three, name):
 def test_joined_files_hold_each_of_theirs_without_comments(class_of_three):
     pages = class_of_three.site.pages
     names = {
-        "look.css": ["fonts.css", "sheet.css", "site.css", "dark.css"],
-        "answering.js": ["sheet.js", "cells.js", "keys.js", "keeping.js"],
+        "look.css": ["fonts.css", "sheet.css", "site.css", "motion.css", "dark.css"],
+        "answering.js": ["practice.js", "sheet.js", "cells.js", "keys.js", "keeping.js"],
         "drawing_graph.js": ["toolbar.js", "surface_graph.js", "surface.js"],
     }
     for joined, parts in names.items():

@@ -20,7 +20,6 @@ KINDS = {
     ".css": "text/css; charset=utf-8",
     ".js": "text/javascript; charset=utf-8",
     ".woff2": "font/woff2",
-    ".svg": "image/svg+xml; charset=utf-8",
 }
 
 #: Static files made from templates that sheets share, by file name.
@@ -44,9 +43,9 @@ _NONE = re.compile(rb"(?!)")
 
 #: Files that the same pages need, as one: a request less costs a telephone less than the bytes.
 _JOINED = {
-    "look.css": ("fonts.css", "sheet.css", "site.css", "dark.css"),
+    "look.css": ("fonts.css", "sheet.css", "site.css", "motion.css", "dark.css"),
     "basis.js": ("htmx.min.js", "site.js"),
-    "answering.js": ("sheet.js", "cells.js", "keys.js", "keeping.js"),
+    "answering.js": ("practice.js", "sheet.js", "cells.js", "keys.js", "keeping.js"),
     "mechanisms.js": ("toolbar.js", "mechanism.js", "mechanism_drawing.js"),
     **{
         f"drawing_{'_'.join(kinds)}.js": tuple(Path(script).name for script in scripts_of(kinds))
