@@ -28,10 +28,8 @@ def test_the_paper_to_draw_on_is_told_by_its_size_and_drawn_on_the_page(name, la
     page = RENDERER.html(handout)
     grid = page[page.index('<figure class="paper">') :]
     assert f'<svg width="{wide + 10}mm" height="{high + 6}mm" viewBox="-8 -1 {wide + 10} {high + 6}"' in grid
-    lines = re.findall(
-        r"M(\d+) 0v(\d+)", grid[: grid.index("</path>") if "</path>" in grid else grid.index("<path stroke")]
-    )
-    assert lines == [(str(x), str(high)) for x in range(wide + 1)]
+    across, along = re.search(r'<path d="M0 0([^M"]+)M0 \d+([^"]+)"', grid).groups()  # each by a millimetre
+    assert (across, along) == (f"v{high}m1-{high}" * (wide + 1), f"h{wide}m-{wide}-1" * (high + 1))
     assert not re.search(r"\.paper \{[^}]*display: none", page)
 
 
