@@ -30,6 +30,7 @@ class Lesson:
     name: str
     title: str
     sections: tuple[str, ...] = ()  #: their headings; none when the whole lesson does
+    parts: tuple[str, ...] = ()  #: of the exercise, that this lesson helps with before the first does
 
     @property
     def places(self) -> tuple[tuple[str, str], ...]:
@@ -109,7 +110,8 @@ def taught_by(folder: Folder, exercise: str, lang: str) -> tuple[Lesson, ...]:
     those that ``[lessons]`` of ``course.toml`` names for it.
 
     ``crank_pin = { lesson = "rods", sections = [8] }``, or a list of these; a bare ``"rods"`` is a whole
-    lesson. Sections are told by the numbers of their headings. A lesson that is not written in the
+    lesson. Sections are told by the numbers of their headings. Of several lessons the first helps with each
+    question that no other names by ``parts = ["r4"]``. A lesson that is not written in the
     language is left out.
 
     Raises
@@ -149,7 +151,7 @@ def _named(stated: Any) -> Any:
 def _taught(folder: Folder, exercise: str, stated: list[Any], lang: str) -> Iterator[Lesson]:
     for lesson in stated:
         table = {"lesson": lesson} if isinstance(lesson, str) else lesson
-        if not isinstance(table, Mapping) or not {"lesson"} <= set(table) <= {"lesson", "sections"}:
+        if not isinstance(table, Mapping) or not {"lesson"} <= set(table) <= {"lesson", "sections", "parts"}:
             raise BadCourse(f"{_SOURCE}: {exercise}: write {_FORM}; found {lesson!r}")
         name = table["lesson"]
         if name not in folder.lessons:
@@ -157,7 +159,8 @@ def _taught(folder: Folder, exercise: str, stated: list[Any], lang: str) -> Iter
         path = folder.lesson_place / f"{name}.{lang}.md"
         if path.exists():
             title, headings = _headings(path, path.stat().st_mtime_ns)
-            yield Lesson(name, title, _sections(exercise, name, table.get("sections", []), headings))
+            sections = _sections(exercise, name, table.get("sections", []), headings)
+            yield Lesson(name, title, sections, tuple(table.get("parts", ())))
 
 
 def _sections(exercise: str, lesson: str, wanted: Any, headings: Mapping[int, str]) -> tuple[str, ...]:

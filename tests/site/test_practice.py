@@ -13,6 +13,7 @@ from sqlalchemy import insert
 from tables import each_row
 
 from coursework import open_course
+from coursework.course.lessons import taught_by
 from coursework.database import tables
 from coursework.database.progress import PersonProgress
 from coursework.scenes.animation import told_by_motion
@@ -34,6 +35,24 @@ def entries(class_, name=ZOE):
 def test_the_course_stands_in_its_order(class_of_three, course):
     page = class_of_three.browser(ZOE).get("/practice").text
     assert tuple(re.findall(r'<li class="new"><a href="/practice/(\w+)">', page)) == course.folder.in_order
+
+
+def test_what_is_said_of_a_question_leads_to_the_lesson_that_teaches_it(zoe):
+    leads = {}
+    for part in ("rA", "omega4", "alpha4"):
+        page = zoe.send({part: "12345"}, check=part, hint=part).text
+        for place in ("told", "hints"):
+            found = re.search(rf'<div id="{place}-{BOX}{part}".*?href="(/lessons/\w+)', page, re.DOTALL)
+            leads[part, place] = found and found[1].rpartition("/")[2]
+    lessons = {"rA": "positions", "omega4": "velocities", "alpha4": "accelerations"}
+    assert leads == {(part, place): lessons[part] for part, place in leads}
+
+
+def test_lessons_name_questions_of_their_exercises():
+    for name in COURSE.names:
+        named = [part for lesson in taught_by(COURSE.folder, name, "en") for part in lesson.parts]
+        assert set(named) <= {part.id for part in COURSE[name].spec.parts}, name
+        assert len(set(named)) == len(named), name
 
 
 def test_a_page_and_a_checked_answer_take_few_statements(zoe, class_of_three):

@@ -461,19 +461,20 @@ class Worksheet:
         """Lessons that teach the exercise."""
         return lessons_for(self.request.site, self.exercise, self.variant.lang)
 
-    @property
-    def help_links(self) -> tuple[LessonLink, ...]:
-        """Links to the sections of the first of these lessons."""
-        return section_links(self.lessons[0]) if self.lessons else ()
+    def help_links(self, part: str) -> tuple[LessonLink, ...]:
+        """Return the links to the sections of the lesson that helps with a part: of these lessons the one
+        that names it, or else the first."""
+        lessons = [one for one in self.lessons if part in one.parts] or self.lessons[:1]
+        return section_links(lessons[0]) if lessons else ()
 
     def _help_with(self, mark: Mark) -> LessonLink | None:
-        """Return the section that explains the mistake of a wrong answer, or else the first that teaches the
-        exercise."""
+        """Return the section that explains the mistake of a wrong answer, or else the first that teaches what
+        the part asks."""
         if mark.verdict in ("correct", "to_mark", "missing", "unreadable"):
             return None
         _, _, mistake = mark.verdict.partition("mistake:")
         link = help_with_mistake(self.request.site, self.exercise, mistake, self.variant.lang)
-        return link or next(iter(self.help_links), None)
+        return link or next(iter(self.help_links(mark.part)), None)
 
     def _hinted_before(self) -> Iterable[str]:
         happened = self.store.happened(self.variant.seed)
