@@ -5,7 +5,7 @@ statements.
     five minutes
 
 Each page is asked for twice by a process of its own, since what a process has read it keeps; nothing but the
-page is timed. A class is dealt, handed in on the site and marked once, with half of the answers right; the
+page is timed. Papers are issued, submitted on the site and marked once, with half of the answers right; the
 other assignments are copies of it. ``--db`` keeps the database, and takes it if it is there.
 """
 
@@ -70,7 +70,7 @@ PAGES: Mapping[str, tuple[str, str]] = {
     "a student's practice": (STUDENT, "/practice"),
     "a student's data": (STUDENT, "/account/data"),
 }
-_COPIED = (tables.variant, tables.dealt, tables.delivery, tables.answer, tables.marking, tables.mark)
+_COPIED = (tables.variant, tables.issue, tables.submission, tables.answer, tables.marking, tables.mark)
 
 
 class Measured(NamedTuple):

@@ -350,7 +350,7 @@ def place_of(sheet):
 
 
 def lost_receipts(connection, told, homework):
-    kept = {row.receipt: row for row in connection.execute(select(tables.delivery))}
+    kept = {row.receipt: row for row in connection.execute(select(tables.submission))}
     for code, (person, texts) in told.receipts.items():
         row = kept.get(code)
         if row is None or row.person_id != person:

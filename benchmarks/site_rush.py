@@ -223,7 +223,7 @@ async def rush(store, students, numbers, told, pid):
 
 def all_done(store, number, count):
     with store.reading() as connection:
-        made = select(func.count()).where(tables.delivery.c.assignment_id == number)
+        made = select(func.count()).where(tables.submission.c.assignment_id == number)
         waits = select(func.count()).select_from(tables.job)
         return connection.execute(made).scalar() == count and not connection.execute(waits).scalar()
 
@@ -231,7 +231,7 @@ def all_done(store, number, count):
 def lost(store, told, number, count):
     """What was acknowledged or left in the boxes and is not there, not in time, or not marked."""
     with store.reading() as connection:
-        kept = {row.receipt: row for row in connection.execute(select(tables.delivery))}
+        kept = {row.receipt: row for row in connection.execute(select(tables.submission))}
         for code, (person, texts) in told.receipts.items():
             row = kept.get(code)
             if row is None or row.person_id != person:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from coursework.course import variant as numbers
 from coursework.course.course import Course, opened
-from coursework.course.folder import UNTOLD
+from coursework.course.folder import DEFAULT_LANGUAGE
 
 if TYPE_CHECKING:
     from datetime import datetime
@@ -27,7 +27,7 @@ def open_course(folder: str | Path | None = None) -> Course[Variant]:
     Parameters
     ----------
     folder
-        The course's folder; the built-in course unless told.
+        The course's folder; by default the built-in course.
 
     Returns
     -------
@@ -72,16 +72,16 @@ def study(
     seed
         Which variant.
     lang
-        Language of all that is said; the course's own unless told.
+        Language of all that is said; by default the course's own.
     course
-        The course's folder, or its name, looked for beside and above where the notebook is; the built-in
-        course unless told.
+        The course's folder, or its name, looked for beside and above where the notebook is; by default the
+        built-in course.
     version
         The version that a notebook was written for.
     folder
         Where what is done is kept, in ``progress.json``.
     clock
-        What tells the time, with its zone; the machine's clock unless told.
+        What tells the time, with its zone; by default the machine's clock.
 
     Returns
     -------
@@ -98,7 +98,7 @@ def study(
     """
     from coursework.selfstudy.session import course_folder, open_session
 
-    chosen = open_course(course_folder(course, lang or UNTOLD))
+    chosen = open_course(course_folder(course, lang or DEFAULT_LANGUAGE))
     lang = chosen.folder.language if lang is None else lang
     text = {} if clock is None else {"clock": clock}
     return open_session(
@@ -124,12 +124,12 @@ def worked(
     seed
         Which variant.
     lang
-        Language of all that is said; the course's own unless told.
+        Language of all that is said; by default the course's own.
     level
         0 tells the whole solution; 1, 2 and 3 leave the last question, a third and two thirds of them blank;
         4 tells nothing but what is asked. What is left is marked by ``check``.
     parts
-        The ids of the questions that it is about; all unless told.
+        The ids of the questions that it is about; by default all.
     course
         As for :func:`study`.
 
@@ -177,16 +177,16 @@ def mistakes(
     UnknownName
         No such exercise, language or mistake.
     """
-    from coursework.selfstudy.worked import mistakes as told
+    from coursework.selfstudy.worked import mistakes as mistakes_text
 
     chosen = _course_of(course, lang)
-    return told(chosen, exercise, names, lang or chosen.folder.language, seed)
+    return mistakes_text(chosen, exercise, names, lang or chosen.folder.language, seed)
 
 
 def _course_of(course: str | Path | None, lang: str | None) -> Course[Variant]:
     from coursework.selfstudy.session import course_folder
 
-    return open_course(course_folder(course, lang or UNTOLD))
+    return open_course(course_folder(course, lang or DEFAULT_LANGUAGE))
 
 
 class Variant(numbers.Variant):
@@ -226,7 +226,7 @@ class Variant(numbers.Variant):
         Parameters
         ----------
         student
-            Name printed on the sheet; none unless told.
+            Name printed on the sheet; by default none.
 
         Returns
         -------
@@ -247,7 +247,7 @@ class Variant(numbers.Variant):
         Parameters
         ----------
         student
-            Name printed on the sheet; none unless told.
+            Name printed on the sheet; by default none.
         polygons
             Whether the polygons that a part asks are drawn.
 
@@ -270,7 +270,7 @@ class Variant(numbers.Variant):
         Parameters
         ----------
         student
-            Name printed in the notebook; none unless told.
+            Name printed in the notebook; by default none.
         beside
             Names of the lessons whose notebooks stand beside it: it links to them.
 

@@ -178,7 +178,7 @@ def nearest(name: str, names: Iterable[str]) -> Message:
     if (near := closest(name, names)) is not None:
         return Message("; did you mean {near!r}?", near=near)
     if names:
-        return Message("; there is: {names}", names=", ".join(sorted(names)))
+        return Message("; available: {names}", names=", ".join(sorted(names)))
     return Message("; there is none")
 
 

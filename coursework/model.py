@@ -126,7 +126,7 @@ def drawn(
     default
         Value that a request takes which leaves the quantity out.
     positive
-        True if a request may only give positive values; unless told, it follows from a positive ``low``, but
+        True if a request may only give positive values; by default it follows from a positive ``low``, but
         for degrees.
     nonzero
         True if 0 is refused, both in draws and in requests.
@@ -233,10 +233,10 @@ class Part:
     ``vector`` and ``matrix`` (entry by entry), ``twist`` and ``wrench`` (two columns, component by
     component), ``twist_pattern`` and ``wrench_pattern`` (which components may differ from zero), ``choices``
     (several right ones of ``choices``), ``text`` or ``drawing``, which a person marks: their ``room`` is a
-    number of lines, or the width and height in mm of a box, of ``millimetre`` paper where it is told. An
-    equation that closes a ``loop`` of the solution is right in any form: :func:`loop_equations`. A numeric
-    answer is right within max(``atol``, ``rtol`` · |reference|), by default 1 %, or 1° for what is measured
-    in degrees. ``when``, a function of given quantities, says whether a variant asks the part. With
+    number of lines, or the width and height in mm of a box, of ``millimetre`` paper where the author states
+    it. An equation that closes a ``loop`` of the solution is right in any form: :func:`loop_equations`. A
+    numeric answer is right within max(``atol``, ``rtol`` · |reference|), by default 1 %, or 1° for what is
+    measured in degrees. ``when``, a function of given quantities, says whether a variant asks the part. With
     ``asks_unit`` the sheet prints no unit beside the box, and an answer without one lacks something. Parts
     that name the same ``judge``, a function of the solution, are judged together by it: where many answers
     are right, and the quantity is only one of them. Their ``atol`` and ``rtol`` are the judge's. A part
@@ -659,7 +659,7 @@ class Exercise:
         The optional effects that the exercise's own parts call for, and a request that names none.
     drawing_mm
         Width and height of the box of millimetre paper that a printed sheet offers to draw in, whole
-        centimetres; none unless told.
+        centimetres; by default none.
     surface_mm
         Width and height of the paper of the drawing surface on pages, where no printed box has these sizes.
     """
@@ -704,7 +704,7 @@ class Exercise:
             for part_id in spec.shown if isinstance(spec.shown, tuple) else ():
                 if part_id not in ids:
                     raise BadCourse(
-                        f"{name} is shown with part {part_id!r}, which there is not{nearest(part_id, ids)}"
+                        f"{name} is shown with part {part_id!r}, which does not exist{nearest(part_id, ids)}"
                     )
             for bound in (spec.low, spec.high):
                 needs = _parameters(bound) if callable(bound) else ()
@@ -720,7 +720,7 @@ class Exercise:
                 if i not in ids:
                     raise BadCourse(f"either_order names no part {i!r}{nearest(i, ids)}")
 
-    def told(self, given: Mapping[str, Any]) -> Mapping[str, Any]:
+    def statement_values(self, given: Mapping[str, Any]) -> Mapping[str, Any]:
         """Return the values that the statement may use beside the given ones.
 
         Parameters

@@ -93,7 +93,7 @@ def mistake(
         Kind of error, one of :data:`~coursework.quantities.error_kinds.PENALTIES`: what it leaves of the
         points is the course's price for it.
     share
-        Share of the points that it leaves, 0 to 1, as a price of its own; that of its kind unless told.
+        Share of the points that it leaves, 0 to 1, as a price of its own; by default that of its kind.
     approximation
         True for a legitimate approximation.
 
@@ -145,10 +145,10 @@ def formula(latex: str) -> Callable[[Callable[..., Any]], Callable[..., Any]]:
     return mark
 
 
-def told_after(*names: str) -> Callable[[Callable[..., Any]], Callable[..., Any]]:
+def explained_after(*names: str) -> Callable[[Callable[..., Any]], Callable[..., Any]]:
     """State which quantities the worked solution prints before this one, beyond those that its code takes.
 
-        @told_after("transmitted")
+        @explained_after("transmitted")
         def rs(_combined): ...
 
     So the table of what is transmitted stands before the rank that is counted in it, whichever questions are
@@ -165,7 +165,7 @@ def told_after(*names: str) -> Callable[[Callable[..., Any]], Callable[..., Any]
     """
 
     def mark(function: Callable[..., Any]) -> Callable[..., Any]:
-        function.__told_after__ = names  # type: ignore[attr-defined]  # marks a function
+        function.__explained_after__ = names  # type: ignore[attr-defined]  # marks a function
         return function
 
     return mark
@@ -417,7 +417,7 @@ class Solution:
         loops = stated(source, getattr(module, "LOOPS", {}), rates, moving, {*given, *functions} - moving)
         functions |= quantities(loops)
         graph = Graph(functions)
-        _check_told(source, graph)
+        _check_explained_after(source, graph)
         for wrong in mistakes.values():
             try:
                 graph.replacing(wrong.replacement)
@@ -550,12 +550,12 @@ class Solution:
         return self.graph.with_functions({"residual": self.residual})
 
 
-def _check_told(source: str, graph: Graph) -> None:
+def _check_explained_after(source: str, graph: Graph) -> None:
     for name in graph.names:
-        for before in graph.node(name).told_after:
+        for before in graph.node(name).explained_after:
             if before not in graph.quantities:
                 raise BadCourse(
-                    f"{source}: {name} is told after {before!r}, which is no "
+                    f"{source}: {name} is explained after {before!r}, which is no "
                     f"quantity{nearest(before, graph.quantities)}"
                 )
 

@@ -26,7 +26,7 @@ class PaperHand(Draughtsman):
 
     def __init__(self, variant, mistakes=None):
         self.variant, self.handout, self.mistakes = variant, handout(variant), mistakes or {}
-        told = variant.exercise.spec.told(variant.given)
+        told = variant.exercise.spec.statement_values(variant.given)
         found = {name: re.search(r"-?\d[\d.]*", str(text)) for name, text in told.items()}
         self.given = {**variant.given, **{name: float(number[0]) for name, number in found.items() if number}}
         self.links = {"x": 0.0} | {

@@ -189,7 +189,7 @@ class Draughtsman(Pencil):
     def __init__(self, *more, mistakes=None, **named):
         super().__init__(*more, **named)
         self.mistakes = mistakes or {}
-        told = self.variant.exercise.spec.told(self.variant.given)
+        told = self.variant.exercise.spec.statement_values(self.variant.given)
         found = {name: re.search(r"-?\d[\d.]*", str(text)) for name, text in told.items()}
         numbers = {name: float(number[0]) for name, number in found.items() if number}
         self.given = {**self.variant.given, **numbers}

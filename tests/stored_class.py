@@ -45,10 +45,10 @@ def rows(course, student, seed, sitting=0, written=True, **changed):
     ]
 
 
-def put(store, content_, *deliveries, source="answers.csv"):
-    """An assignment with deliveries; its id."""
+def put(store, content_, *submissions, source="answers.csv"):
+    """An assignment with submissions; its id."""
     with store.begin() as connection:
         number = put_issued(connection, content_)
-        for some in deliveries:
+        for some in submissions:
             insert_submission(connection, number, some, source=source, received_at=CAME)
     return number

@@ -142,7 +142,7 @@ def _data(subject: Subject, texts: Words, lang: str) -> str:
     driven = [p for p in subject.hard if p.moved == subject.driver] or list(subject.hard)
     if driven:
         lines.append(
-            texts["hard_data"].format("; ".join(told_place(subject, p, texts, lang) for p in driven[:3]))
+            texts["hard_data"].format("; ".join(place_text(subject, p, texts, lang) for p in driven[:3]))
         )
     return " ".join(lines)
 
@@ -158,7 +158,7 @@ def _value(subject: Subject, name: str, value: Any, lang: str) -> str:
     return f"${subject.exercise.symbol(name)} = $ {number(value, unit, lang, 6)}"
 
 
-def told_place(subject: Subject, point: HardPlace, texts: Words, lang: str) -> str:
+def place_text(subject: Subject, point: HardPlace, texts: Words, lang: str) -> str:
     """Describe a hard place in words: which quantities come near each other, and what vanishes there."""
     unit = subject.exercise.units.get(point.moved, "1")
     tuned = ""

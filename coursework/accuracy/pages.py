@@ -8,7 +8,7 @@ from typing import Any
 
 from coursework.accuracy.hard_places import HardPlace
 from coursework.accuracy.overview import OverviewLine
-from coursework.accuracy.page import charts_of, number, symbol_of, told_place
+from coursework.accuracy.page import charts_of, number, place_text, symbol_of
 from coursework.accuracy.paper import PLAIN, PaperRow, Share, total
 from coursework.accuracy.subject import Subject
 from coursework.accuracy.timing import Times, is_busy
@@ -126,7 +126,7 @@ def _places_table(course: Course, lines: Sequence[OverviewLine], texts: Words, l
         if line.place is not None:
             subject = Subject(course[line.exercise])
             point = HardPlace(scale=1.0, **line.place)
-            rows.append((_titled(course, line, lang), told_place(subject, point, texts, lang)))
+            rows.append((_titled(course, line, lang), place_text(subject, point, texts, lang)))
     return ReportTable((text["exercise"], text["place"]), tuple(rows), (False, False))
 
 

@@ -13,8 +13,8 @@ import numpy as np
 WIDE = 0.25  #: a spread, in parts of the median, that an idle machine hardly makes
 MANY = 0.2  #: the share of wide spreads from which on no time of a page is compared
 ALIKE = 1.75  #: times whose ratio is smaller are alike, whatever their spreads
-#: Processor time where it is told finely, so that what else the machine does counts little; else the time
-#: that passes.
+#: Processor time where its resolution is fine, so that what else the machine does counts little; else the
+#: time that passes.
 clock = time.process_time if time.get_clock_info("process_time").resolution <= 1e-6 else time.perf_counter
 _ROUNDS = 9
 _LEAST_ROUNDS = 3

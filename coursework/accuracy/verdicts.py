@@ -1,7 +1,7 @@
 """Conclusions of a measurement in words, stable under repeated measurement.
 
 No time stands in a sentence, and none is called shorter than another unless the quartiles are apart and their
-ratio is plain. Errors are the same in every run, and may be told.
+ratio is plain. Errors are the same in every run, and may be stated.
 """
 
 from __future__ import annotations

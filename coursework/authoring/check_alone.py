@@ -19,7 +19,7 @@ from coursework.language.words import words
 from coursework.marking.marking import mark as grade
 from coursework.model import Part
 from coursework.rendering.renderer import renderer_of
-from coursework.selfstudy.worked import LEVELS, blanks, told_steps
+from coursework.selfstudy.worked import LEVELS, blanks, steps_text
 from coursework.sheets.answer_sheet import answer_sheet
 from coursework.sheets.handout import handout
 
@@ -66,7 +66,7 @@ def _leave_blanks(variant: Variant) -> None:
     texts, keys = words(variant.lang)["lesson"], answer_keys(variant.parts)
     for level in range(1, LEVELS):
         left = blanks(variant, level, in_lesson=True)
-        told_steps(variant, level, left, keys, texts, in_lesson=True)
+        steps_text(variant, level, left, keys, texts, in_lesson=True)
 
 
 def _unfair(variant: Variant) -> Iterator[str]:

@@ -275,7 +275,7 @@ def _check_recognised(variant: Variant, sheet: Mapping[str, tuple[str, Any]], re
         if mark.in_other_order:
             continue  # it is the right answer of the other assembly
         if mark.verdict == "slip:not_drawn":
-            continue  # read off a wrong drawing, and told so
+            continue  # read off a wrong drawing, and reported as such
         report.counts["mistakes recognised"] += 1
         if name not in mark.mistakes:
             report.fail(

@@ -5,8 +5,8 @@ evaluated. It must give the printed value, up to what the rounding of the printe
 that may be rounded is moved by half of its last digit, alone, and the moves of the result add up. Angles are
 the same after a full turn.
 
-What cannot be told is never taken for proved: a step that words alone tell, a formula that holds what has no
-value, and numbers whose rounding moves the result by more than a tenth of it.
+What cannot be decided is never taken for proved: a step that words alone explain, a formula that holds what
+has no value, and numbers whose rounding moves the result by more than a tenth of it.
 """
 
 from __future__ import annotations
@@ -87,7 +87,7 @@ def prove(step: Step, by_symbol: Mapping[str, str]) -> Proof | None:
     except NotEvaluable:
         return None  # an equation, a case
     if not step.formula:
-        return Proof(why_not=Message("told in words"))
+        return Proof(why_not=Message("explained in words"))
     if not step.substitution and step.formula in by_symbol:
         return _compared(value, read(by_symbol[step.formula], PRINTED_DIGITS), is_angle)
     try:

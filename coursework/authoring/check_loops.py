@@ -35,11 +35,13 @@ def check_loops(variant: Variant, report: CheckReport) -> None:
         for fault, answer in fault_answers(variant.exercise, part):
             if judge.are_alike(answer, str(reference)):
                 continue  # nothing is wrong in this form
-            report.counts["loops told"] += 1
+            report.counts["loops explained"] += 1
             mark = grade(variant, {part.id: answer})[part.id]
             if not mark.matches:
                 names = ", ".join(fault.names)
-                report.fail(f"{part.id} = {answer!r} ({fault.kind} of {names}) marks {mark.verdict}, untold")
+                report.fail(
+                    f"{part.id} = {answer!r} ({fault.kind} of {names}) marks {mark.verdict}, unexplained"
+                )
 
 
 def equation_holds(variant: Variant, part: Part) -> bool:

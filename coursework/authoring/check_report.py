@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 RESIDUAL = 1e-9  #: largest relative residual of the governing equations
-USUAL = ("usual errors told", "usual errors told otherwise", "usual errors among many")
+USUAL = ("usual errors explained", "usual errors explained otherwise", "usual errors among many")
 KEPT_DIGITS = (3, 4, 5)  #: of simulated students who round at every step
 
 
@@ -107,7 +107,7 @@ def _tried(report: CheckReport) -> dict[str, int]:
         "mistakes": counts["mistakes recognised"],
         "usual errors": sum(counts[kind] for kind in USUAL),
         "slips": counts["slips recognised"],
-        "loops": counts["loops told"],
+        "loops": counts["loops explained"],
         "followed": counts["follow-through"],
         "nonsense": counts["nonsense"],
         "formulas": counts["formulas proved"],
@@ -163,7 +163,7 @@ def notes(reports: Sequence[CheckReport]) -> list[str]:
 
 
 def _by_reason(unproved: Mapping[str, str]) -> str:
-    """``ka, p (told in words), q (r has no value)``."""
+    """``ka, p (explained in words), q (r has no value)``."""
     names: dict[str, list[str]] = {}
     for name, why in unproved.items():
         names.setdefault(why, []).append(name)

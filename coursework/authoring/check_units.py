@@ -13,7 +13,7 @@ TRIED = 5  #: variants whose quantities are followed: enough to meet the branche
 
 
 def check_units(drawn: Sequence[Variant], report: CheckReport) -> None:
-    """Each quantity's formula gives its declared unit; what cannot be told is listed with its reason."""
+    """Each quantity's formula gives its declared unit; what cannot be decided is listed with its reason."""
     findings = Findings()
     for variant in drawn[:TRIED]:
         findings.merge(proof_of(variant))

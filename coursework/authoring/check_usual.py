@@ -1,4 +1,4 @@
-"""The promises about usual errors: one that shows is never right and is told; what nothing protects is
+"""The promises about usual errors: one that shows is never right and is explained; what nothing protects is
 listed.
 
 Errors are made as the engine makes them, in the formula of each asked number, and handed in as students write
@@ -29,7 +29,7 @@ DIGITS = 5  #: significant digits of an answer
 
 
 def check_usual_errors(drawn: Sequence[Variant], report: CheckReport) -> None:
-    """Each error that shows is told by its kind, or as one of several; some on each variant, all over
+    """Each error that shows is explained by its kind, or as one of several; some on each variant, all over
     many."""
     for number, variant in enumerate(drawn[:TRIED]):
         spellings = {part.id: list(_own_errors(part, variant.key)) for part in variant.parts}
@@ -62,9 +62,9 @@ def _count_verdict(variant: Variant, part: Part, error: UsualError, mark: Any, r
     if mark.verdict == "correct" and not mark.in_other_order:
         report.fail(f"seed {variant.seed}: {part.id} with an error of the kind {error.kind!r} marks correct")
     elif f"slip:{error.kind}" == mark.verdict:
-        report.counts["usual errors told"] += 1
+        report.counts["usual errors explained"] += 1
     elif mark.verdict != "wrong":
-        report.counts["usual errors told otherwise"] += 1  # it gives what something else gives as well
+        report.counts["usual errors explained otherwise"] += 1  # it gives what something else gives as well
     elif mark.matches:
         report.counts["usual errors among many"] += 1
     elif mark.read_as:

@@ -296,7 +296,7 @@ def check_texts(exercise: CourseExercise, report: CheckReport) -> None:
             report.fail(f"{section_text.source}: the film has no words")
         for name in exercise.solution.mistakes:
             if not section_text.section(f"mistake {name}").text:
-                report.fail(f"{section_text.source}: mistake {name} is told in no words")
+                report.fail(f"{section_text.source}: mistake {name} has no text")
         report.counts["texts"] += 1
 
 
@@ -342,7 +342,7 @@ def check_needs(exercise: CourseExercise, report: CheckReport) -> bool:
         report.fail(f"{exercise.solution.source}: {fault.needed}{near}")
         return False
     except CourseworkError:
-        pass  # it is told by what needs it
+        pass  # what needs it reports it
     return True
 
 
@@ -353,7 +353,7 @@ def check_reals(exercise: CourseExercise, report: CheckReport) -> bool:
             variant = exercise.variant(seed, parts=(ALL,))
             values = variant.quantities(variant.asked_quantities)
         except Exception:
-            continue  # it is told by what needs it
+            continue  # what needs it reports it
         try:
             refuse_complex(exercise, variant.parts, values)
         except BadCourse as fault:

@@ -25,7 +25,7 @@ def new_example(folder: Path, name: str) -> list[Path]:
     """
     names = example_names()
     if name not in names:
-        raise BadInput("no example {name!r}; there is: {names}", name=name, names=", ".join(names))
+        raise BadInput("no example {name!r}; available: {names}", name=name, names=", ".join(names))
     if not is_bare(folder):
         raise BadInput("{folder} is not empty; name a new folder for the example", folder=folder)
     return _copied(EXAMPLES / name, folder)

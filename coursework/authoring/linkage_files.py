@@ -152,8 +152,8 @@ def report(exercise: CourseExercise[Any], made: CompiledLinkage, seed: int) -> l
         if found
         else places == places
     )
-    told = Message("the driver turns") if unit == "°" else Message("the driving length goes")
-    rows.append((told, _range(places, np.broadcast_to(closed, places.shape), unit)))
+    label = Message("the driver turns") if unit == "°" else Message("the driving length goes")
+    rows.append((label, _range(places, np.broadcast_to(closed, places.shape), unit)))
     for name, values in found.items():
         along = np.broadcast_to(np.asarray(values, dtype=float), places.shape)[closed]
         if not len(along):
@@ -257,7 +257,7 @@ def from_pylinkage(path: Path) -> str:
         ) from fault
     except (ValueError, KeyError, TypeError, AttributeError) as fault:
         raise BadInput(
-            "{file} is no linkage of pylinkage: joints are missing, or it is no JSON", file=path
+            "{file} is not a linkage of pylinkage: it has no joints, or is not JSON", file=path
         ) from fault
     return _Imported(path, str(data.get("name") or path.stem), listed).text()
 

@@ -24,21 +24,21 @@ def new_assignment(
 ) -> Path:
     """Write an assignment of some exercises; gives the file.
 
-    Its sheets are in ``langs``; unless told, in the language ``around`` where all its exercises speak it,
+    Its sheets are in ``langs``; by default in the language ``around`` where all its exercises speak it,
     else in the course's own. Its titles stand in every language of the exercises, for students whose line of
     the roster says another.
 
     Raises
     ------
     BadInput
-        There is such a file, no exercise is named, or one does not speak a language that is told.
+        There is such a file, no exercise is named, or one does not have a given language.
     UnknownName
         An exercise that the course does not have.
     """
     if not names:
         some = " ".join(course.names[:3])
         raise BadInput(
-            "an assignment asks exercises: coursework new assignment {path} {some}", path=path, some=some
+            "an assignment needs exercises: coursework new assignment {path} {some}", path=path, some=some
         )
     if path.exists():
         raise BadInput("{path} exists already; choose another name", path=path)

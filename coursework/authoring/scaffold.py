@@ -25,7 +25,7 @@ def languages_around(environment: Mapping[str, str]) -> tuple[str, ...]:
 
 
 def new_course(folder: Path, langs: Collection[str] | None = None) -> list[Path]:
-    """Write a course with one small exercise; gives the files written. It speaks every language unless told.
+    """Write a course with one small exercise; gives the files written. By default it has every language.
 
     Raises
     ------
@@ -80,7 +80,7 @@ def check_name(name: str) -> None:
 def new_exercise(folder: Path, name: str, langs: Collection[str] | None = None) -> list[Path]:
     """Write a working exercise into a course folder, which is made if need be; gives the files written.
 
-    It has texts in the languages of the course; ``langs`` are those of one that is made, all unless told.
+    It has texts in the languages of the course; ``langs`` are those of one that is made, by default all.
 
     Raises
     ------

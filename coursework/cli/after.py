@@ -187,8 +187,8 @@ def after(
         _tell_preview(exam, steps, preview, undone)
     if yes or (not as_json and sys.stdin.isatty() and click.confirm(localised(Message("Confirm?")))):
         confirm(steps, feedback)
-        told = "{decisions} taken back" if undone else "{decisions} kept; --undo takes the last one back"
-        say(told, decisions=counted(len({one.withdraws or one.id for one in steps}), "decision"))
+        message = "{decisions} taken back" if undone else "{decisions} kept; --undo takes the last one back"
+        say(message, decisions=counted(len({one.withdraws or one.id for one in steps}), "decision"))
     elif not as_json:
         say("nothing is written: --yes confirms it")
     return DONE

@@ -220,28 +220,28 @@ def tell_dry_run(
     from coursework.issuing.dry_run import dry_run
 
     paper = "letter" if "letter" in formats else "a4"
-    told = dry_run(course, issued.issues, assignment, paper=paper, scan="scan" in formats)
+    report = dry_run(course, issued.issues, assignment, paper=paper, scan="scan" in formats)
     say(
         "{papers}, {each} each: {pages} in all, {sheets} sheets of paper{measured}",
-        papers=counted(told.papers, "paper"),
-        each=_range(min(told.pages), max(told.pages), "page"),
-        pages=counted(told.total_pages, "page"),
-        sheets=told.total_sheets,
+        papers=counted(report.papers, "paper"),
+        each=_range(min(report.pages), max(report.pages), "page"),
+        pages=counted(report.total_pages, "page"),
+        sheets=report.total_sheets,
         measured=""
-        if told.measured == told.papers
-        else Message(" (measured on {count} of them)", count=told.measured),
+        if report.measured == report.papers
+        else Message(" (measured on {count} of them)", count=report.measured),
     )
-    for number, share in sorted(told.white.items()):
+    for number, share in sorted(report.white.items()):
         say("white space: page {number}, up to {share:.0f} % of its height", number=number, share=100 * share)
-    if not told.white:
+    if not report.white:
         say("white space: no page is white by more than a quarter")
     say(
         "points: {total}{mark}: {exercises}",
-        total=_points(*told.total_points),
+        total=_points(*report.total_points),
         mark=Message(", mark out of {of:g}", of=assignment.mark.of) if assignment and assignment.mark else "",
-        exercises=", ".join(f"{name} {_points(*each)}" for name, each in told.points.items()),
+        exercises=", ".join(f"{name} {_points(*each)}" for name, each in report.points.items()),
     )
-    for name, (used, left) in told.left.items():
+    for name, (used, left) in report.left.items():
         say(
             "variants of {exercise}: {used} used, {left} left",
             exercise=name,

@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     from coursework.gradebook.book import Gradebook
     from coursework.gradebook.feedback_form import FeedbackForm
 
-_TOLD = 10  #: lines that are told, of however many
+_MOST_LINES = 10  #: lines that are printed, of however many
 
 
 def store_at(context: click.Context, url: str, *, new: bool = False) -> Store:
@@ -171,12 +171,12 @@ def _tell_changes(now: GradedNow, store: Store, number: int) -> int:
     """Print the changed marks and the pending decisions."""
     from coursework.database.current_marks import answers_waiting
 
-    for change in now.marked.changes[:_TOLD]:
+    for change in now.marked.changes[:_MOST_LINES]:
         click.echo(_change(change))
-    if len(now.marked.changes) > _TOLD:
+    if len(now.marked.changes) > _MOST_LINES:
         say(
             "and {count} more; coursework database history lists them all",
-            count=len(now.marked.changes) - _TOLD,
+            count=len(now.marked.changes) - _MOST_LINES,
         )
     sheets = now.work.sheets
     print_notes(sheets.warnings)

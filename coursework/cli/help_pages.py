@@ -47,14 +47,14 @@ class _Formatter(click.HelpFormatter):
 
     def write_dl(self, rows: Iterable[tuple[str, str]], col_max: int = 30, col_spacing: int = 2) -> None:
         known = translations(language_of_messages())
-        told = []
+        shown = []
         for first, second in rows:
             match = _EXTRA.fullmatch(second)
             text, extra = (match["text"], match["extra"] or "") if match else (second, "")
-            told.append(
+            shown.append(
                 (_by_words(first, _PLACEHOLDER, known), translated(text) + _by_words(extra, _WORD, known))
             )
-        super().write_dl(told, col_max, col_spacing)
+        super().write_dl(shown, col_max, col_spacing)
 
 
 class _Context(click.Context):

@@ -135,7 +135,7 @@ def _platform(
     name: str,
     addresses: dict[str, str | None],
 ) -> LTIPlatform | None:
-    """Return the platform that is told; none as long as it has not said its client ID."""
+    """Return the named platform; none as long as its client ID is unknown."""
     from coursework.platforms.lti.settings import KINDS as known
     from coursework.platforms.lti.settings import LTIPlatform, checked_url
     from coursework.system.headers import origin

@@ -166,12 +166,12 @@ def grade(
         )
     if db is None and (assignment or replace):
         raise BadInput(
-            "{option} is of a database: --db URL", option="--assignment" if assignment else "--replace"
+            "{option} needs a database: --db URL", option="--assignment" if assignment else "--replace"
         )
     if db is not None and names:
-        raise BadInput("--names is of files: a database has names")
+        raise BadInput("--names applies to files; a database has names")
     if db is not None and carry is not None:
-        raise BadInput("--carry is of files: in a database the assignment states what is carried")
+        raise BadInput("--carry applies to files; in a database the assignment states the columns")
     _check_source(submissions, marks, accepted, in_database=db is not None)
     from coursework.gradebook.feedback_form import FeedbackForm
 
@@ -202,7 +202,7 @@ def grade(
     if marks is not None:
         out = out or marks.parent
         writes(context, out)
-        return _told_standing(
+        return _print_standing(
             _grade_standing(opened(context), marks, issued, out, feedback, decimal, form, carried), marks, out
         )
     out = out or issued.parent / "marks"
@@ -327,7 +327,7 @@ def _grade_standing(
         )
 
 
-def _told_standing(book: Gradebook, marks: Path, out: Path) -> int:
+def _print_standing(book: Gradebook, marks: Path, out: Path) -> int:
     say("{marks} taken from {source}; see {out}", marks=counted(book.rows_in, "mark"), source=marks, out=out)
     if book.changes:
         say(

@@ -103,13 +103,13 @@ def simulate(
         raise WrongValue("--tolerance goes with --budget")
     if out is not None:
         writes(context, out)
-    told_file = _scene_file(opened(context), exercise, options, typed)
+    scene_file = _scene_file(opened(context), exercise, options, typed)
     if plan:
-        _tell_plan(told_file.scene, as_json)
+        _tell_plan(scene_file.scene, as_json)
     elif budget:
-        _tell_budget(told_file, tolerance, out, decimal, as_json)
+        _tell_budget(scene_file, tolerance, out, decimal, as_json)
     else:
-        _tell_table(told_file, out, decimal, as_json)
+        _tell_table(scene_file, out, decimal, as_json)
 
 
 def _scene_file(course: Any, exercise: str, settings: dict[str, Any], typed: set[str]) -> SceneFile:
@@ -130,12 +130,12 @@ def _scene_file(course: Any, exercise: str, settings: dict[str, Any], typed: set
     scene = Scene(chosen_exercise, given, split_list(settings["effects"]), tuple(settings["show"]))
     if settings["drive"] is None:
         if settings["duration"] is not None:
-            raise WrongValue("--duration is that of a motion in time: give its drive too, --drive torque=5")
+            raise WrongValue("--duration applies to a motion in time: give its drive too, --drive torque=5")
         return SceneFile(exercise, scene, settings["steps"] or 360)
     for option in ("steps", "over"):
         if option in typed:
             raise WrongValue(
-                "--{option} is that of a cycle; with --drive the motion is in time", option=option
+                "--{option} applies to a cycle, and with --drive the motion runs in time", option=option
             )
     return SceneFile(
         exercise,

@@ -161,13 +161,13 @@ class Lists(click.ParamType):
                     self.refusal(word)
                     if self.refusal
                     else localised(
-                        Message("no {word!r}; there is {known}", word=word, known=", ".join(accepted))
+                        Message("no {word!r}; available: {known}", word=word, known=", ".join(accepted))
                     )
                 )
                 self.fail(message, param, ctx)
         if not words:
             self.fail(
-                localised(Message("nothing named; there is {known}", known=", ".join(accepted))), param, ctx
+                localised(Message("nothing named; available: {known}", known=", ".join(accepted))), param, ctx
             )
         return words
 
@@ -261,19 +261,19 @@ cluster_option = click.option(
 json_option = click.option("--json", "as_json", is_flag=True, help="Print JSON.")
 
 
-def spoken(context: click.Context, parameter: click.Parameter, told: Any) -> Any:
-    """Return the language, or the languages, that are told; else the environment's where the course speaks
+def spoken(context: click.Context, parameter: click.Parameter, value: Any) -> Any:
+    """Return the given language, or languages; else the environment's where the course speaks
     it, else the course's."""
     from coursework.course.folder import course_folder
     from coursework.language.environment import language_of
 
     if context.resilient_parsing:
-        return told
+        return value
     folder = course_folder(context.obj)
-    for lang in [told] if isinstance(told, str) else told or ():
+    for lang in [value] if isinstance(value, str) else value or ():
         folder.check_speaks(lang)
-    if told:
-        return told
+    if value:
+        return value
     around = language_of(os.environ)
     lang = around if around in folder.languages else folder.language
     return (lang,) if isinstance(parameter.type, Lists) else lang

@@ -51,7 +51,7 @@ class _Wanted(NamedTuple):
 
     context: click.Context
     exercises: Sequence[str]  #: names, or the file of an assignment
-    variants: int  #: how many; 0 where it is not told
+    variants: int  #: how many; 0 where it is unknown
     seed: int
     langs: Sequence[str]
     parts: Sequence[str] | None  #: ids; None for the usual ones
@@ -195,7 +195,7 @@ def export(
 def _export_autograder(
     course: Course[Any], wanted: _Wanted, issued: Path | None, students: Sequence[Student], out: Path
 ) -> None:
-    """Write what marks a build's answers on a platform that runs it: of the build that is told, or of the one
+    """Write what marks a build's answers on a platform that runs it: of the given build, or of the one
     that would be made."""
     from coursework.platforms.gradescope import PLATFORM
     from coursework.system.writing import File, write_tree
@@ -279,7 +279,7 @@ def _drawn(course: Course[Any], wanted: _Wanted, students: Sequence[Student], ou
 
 
 def _secret_beside(wanted: _Wanted, out: Path, lang: str) -> Secret:
-    """Return the secret of an export made there before, else a new one, which is told."""
+    """Return the secret of an export made there before, else a new one, which is printed."""
     from coursework.course.secrecy import Secret
     from coursework.issuing.issued import Issued, secret_of
 
@@ -312,10 +312,10 @@ def _refuse_options(context: click.Context, path: Path) -> None:
 
 
 def _langs(context: click.Context, assignment: Assignment, langs: Sequence[str]) -> Sequence[str]:
-    """Return the languages told, else those of the assignment."""
+    """Return the languages given, else those of the assignment."""
     stated = assignment.options.get("lang")
-    is_told = context.get_parameter_source("langs") is not click.core.ParameterSource.DEFAULT
-    if is_told or stated is None:
+    is_given = context.get_parameter_source("langs") is not click.core.ParameterSource.DEFAULT
+    if is_given or stated is None:
         return langs
     return split_list(stated) if isinstance(stated, str) else tuple(map(str, stated))
 

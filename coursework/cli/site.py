@@ -211,7 +211,7 @@ def _database_of(course: str | None, db: str | None, demo: str | None) -> Iterat
 
 def _address(host: str, at: socket.socket) -> str:
     """Return the URL at which browsers reach a listening socket. Raises BadInput: it listens at every address
-    of the machine, and none is told."""
+    of the machine, and none is given."""
     if host in ("0.0.0.0", "::"):
         raise BadInput(
             "--host {host} needs the address for browsers: --url https://mechanics.example.org", host=host

@@ -52,10 +52,10 @@ def progress(context: click.Context, folder: Path, day: datetime | None, lang: s
             }
         )
         return
-    lines = mastery.told_standings(course, file.progress, on.date(), lang)
-    pieces = [lines or study_words["progress"]["nothing"], mastery.told_skills(course, file.progress, lang)]
+    lines = mastery.standings_text(course, file.progress, on.date(), lang)
+    pieces = [lines or study_words["progress"]["nothing"], mastery.skills_text(course, file.progress, lang)]
     if step is not None:
-        pieces.append(mastery.told_advice(course, step, lang))
+        pieces.append(mastery.advice_text(course, step, lang))
     click.echo(str(NotebookDisplay(lang, *pieces)))
 
 

@@ -1,7 +1,7 @@
 """A course carried to other machines, whose processes have the package and nothing of the folder.
 
 The folder is sent once, by its content: a process unpacks it in a folder of its own that the digest names, so
-that two courses, or two states of one, stand side by side. Places in it are told from there: a text or a path
+that two courses, or two states of one, stand side by side. Paths in it are relative to them: a text or a path
 in the course's folder is, in the process, the same place of the unpacked one, and back, so that what comes
 back says what it would say here.
 """
@@ -33,7 +33,7 @@ KINDS = ("exercises", "solutions", "templates")
 #: What the bytes of sheets and the digits of marks hang on, beside the package itself.
 NEEDED = ("numpy", "scipy", "typst", "jinja2", "markdown-it-py", "mdit-py-plugins", "nbformat")
 
-_BUILTIN, _COURSE = 0, 1  #: where a place is told from
+_BUILTIN, _COURSE = 0, 1  #: what a path is relative to
 
 Roots = Mapping[int, tuple[str, ...]]  #: each under all its names, the first of which is used
 
@@ -88,10 +88,10 @@ class _Task:
     """Task as the receiving process runs it."""
 
     def __init__(self, content: bytes, caller: _Caller, task: tuple[bytes, ...]):
-        self._told = pickle.PickleBuffer(content), tuple(caller), task
+        self._parts = pickle.PickleBuffer(content), tuple(caller), task
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return _work, self._told
+        return _work, self._parts
 
 
 def _files(folder: Folder) -> Iterator[tuple[str, bytes]]:
@@ -223,7 +223,7 @@ def _builtin() -> Roots:
 
 
 class _Pickler(pickle.Pickler):
-    """Writes texts and paths with their places told from roots that have other names elsewhere."""
+    """Writes texts and paths relative to roots that have other names elsewhere."""
 
     def __init__(self, file: io.BytesIO, roots: Roots):
         super().__init__(file, protocol=5)

@@ -154,9 +154,9 @@ class CourseExercise(Generic[V]):
         Parameters
         ----------
         only
-            The quantities wanted, and nothing else is computed; every part's unless told.
+            The quantities wanted, and nothing else is computed; by default every part's.
         effects
-            Optional effects that the request calls for; unless told, those of the exercise's own questions.
+            Optional effects that the request calls for; by default those of the exercise's own questions.
             None with ``()``.
         **given
             Scalars, arrays that broadcast, or texts with a unit (``"0.2286 m"``). The driver's angle and
@@ -264,10 +264,10 @@ class CourseExercise(Generic[V]):
         secret: Secret | None = None,
         given: Mapping[str, Any] | None = None,
     ) -> V:
-        """Return the variant of a seed: the same for ever for this exercise and version; in the course's
-        language unless told.
+        """Return the variant of a seed: the same for ever for this exercise and version; by default in the
+        course's language.
 
-        ``parts`` are the ids of those that it asks; ``usual`` stands for those that are asked unless told,
+        ``parts`` are the ids of those that it asks; ``usual`` stands for those that are asked by default,
         ``all`` for every one. With the ``secret`` of an assignment, the seed is one of its codes. Values that
         are ``given``, numbers or texts with a unit, are not drawn.
 

@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from coursework.course.marking_rules import Rules
 
 MECHANISM = ".toml"  #: ending of the file of an exercise that is stated as a mechanism
-UNTOLD = "fr"  #: the language of a course that states none, where nobody says another
+DEFAULT_LANGUAGE = "fr"  #: the language of a course that states none, where nobody says another
 
 _packages = itertools.count()
 
@@ -222,7 +222,7 @@ class Folder:
         spoken = languages()
         stated = self.settings.get("languages")
         if stated is None:
-            return tuple(sorted(spoken, key=lambda lang: lang != UNTOLD))
+            return tuple(sorted(spoken, key=lambda lang: lang != DEFAULT_LANGUAGE))
         is_list = isinstance(stated, list) and stated and all(isinstance(lang, str) for lang in stated)
         if not is_list or len(set(stated)) < len(stated):
             raise BadCourse(f'{self._settings_file}: write languages = ["en"], each once; found {stated!r}')

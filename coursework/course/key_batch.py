@@ -28,8 +28,8 @@ class Keyed(KeySource, Protocol):
 
 
 def keys_of(exercise: CourseExercise[Any], variants: Sequence[Keyed], rules: Rules | None = None) -> Batch:
-    """Give many variants of one exercise keys that are computed together; they mark by the course's rules
-    unless told.
+    """Give many variants of one exercise keys that are computed together; by default they mark by the
+    course's rules.
 
     A variant that has some quantity that does not exist keeps a key of its own, which says why.
     """

@@ -110,7 +110,7 @@ def taught_by(folder: Folder, exercise: str, lang: str) -> tuple[Lesson, ...]:
     those that ``[lessons]`` of ``course.toml`` names for it.
 
     ``crank_pin = { lesson = "rods", sections = [8] }``, or a list of these; a bare ``"rods"`` is a whole
-    lesson. Sections are told by the numbers of their headings. Of several lessons the first helps with each
+    lesson. Sections are named by the numbers of their headings. Of several lessons the first helps with each
     question that no other names by ``parts = ["r4"]``. A lesson that is not written in the
     language is left out.
 
@@ -169,7 +169,7 @@ def _sections(exercise: str, lesson: str, wanted: Any, headings: Mapping[int, st
         if number not in headings:
             there = ", ".join(map(str, headings)) or "none"
             raise BadCourse(
-                f"{_SOURCE}: {exercise}: the lesson {lesson} has no section {number!r}; there is {there}"
+                f"{_SOURCE}: {exercise}: the lesson {lesson} has no section {number!r}; available: {there}"
             )
     return tuple(headings[number] for number in wanted)
 

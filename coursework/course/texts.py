@@ -146,7 +146,7 @@ def _rendered(path: Path, folders: tuple[Path, ...], variables: Mapping[str, obj
 
 
 def _text(markdown: str, path: Path, source: str, *, formulas: bool) -> RenderedText:
-    """Return the sections of a rendered text, once it is proofread; its formulas only where told."""
+    """Return the sections of a rendered text, once it is proofread; its formulas only on request."""
     from coursework.markup.proofreading import pair_dollars, read_formulas
 
     def place(piece: str) -> str:
@@ -275,8 +275,8 @@ def _jinja(path: Path, changed: int, folders: tuple[Path, ...], source: str) -> 
 
 @lru_cache(maxsize=1024)
 def _names(path: Path, changed: int, folders: tuple[Path, ...], source: str) -> frozenset[str]:
-    """Return the variables of a text and of those that it includes by name; what cannot be read is told where
-    it is rendered."""
+    """Return the variables of a text and of those that it includes by name; what cannot be read is reported
+    where it is rendered."""
     template = _template(path, changed, folders, source)
     if isinstance(template, RenderedText):
         return frozenset()

@@ -176,7 +176,7 @@ class Variant:
             n: str(v) if spec.given[n].is_choice else with_unit(plain(v), spec.given[n].unit, self.lang)
             for n, v in self.given.items()
         }
-        return {**texts, **spec.told(self.given)}
+        return {**texts, **spec.statement_values(self.given)}
 
     @cached_property
     def used(self) -> dict[str, Any]:
@@ -280,7 +280,7 @@ class Variant:
         """Return the engine's label of a case that the statement need not name: a kind of joint."""
         return next((p.sort.called(case, lang) for p in self.exercise.spec.parts if p.id == quantity), "")
 
-    def told(self, mistake: str) -> str:
+    def mistake_text(self, mistake: str) -> str:
         """Return the message for a student who made a named mistake."""
         name = f"mistake {mistake}"
         text = self.exercise.texts.constants("solutions", self.lang).texts.get(name)

@@ -16,7 +16,7 @@ from coursework.database.permissions import (
     groups_within,
     may,
 )
-from coursework.database.tables import area, assignment, dealt, person, variant
+from coursework.database.tables import area, assignment, issue, person, variant
 from coursework.errors import bare_letters
 from coursework.issuing.identity import GROUP, is_called
 
@@ -71,8 +71,8 @@ def groups_of(connection: Connection, number: int) -> dict[str, str]:
 def _groups_as_written(connection: Connection, number: int) -> dict[str, str]:
     columns = connection.execute(select(assignment.c.columns).where(assignment.c.id == number)).scalar() or {}
     given = (
-        select(dealt.c.student, person.c.id, person.c.columns)
-        .select_from(dealt.join(variant).outerjoin(person))
+        select(issue.c.student, person.c.id, person.c.columns)
+        .select_from(issue.join(variant).outerjoin(person))
         .where(variant.c.assignment_id == number)
     )
     groups = {row.student: group_of(row.columns) for row in connection.execute(given)}

@@ -11,7 +11,7 @@ from typing import Any
 from sqlalchemy import BindParameter, ColumnElement, Connection, Select, bindparam, insert, select, update
 
 from coursework.database.people import put_people
-from coursework.database.tables import assignment, dealt, variant
+from coursework.database.tables import assignment, issue, variant
 from coursework.errors import BadInput, nearest
 from coursework.issuing.issued import CODE, ISSUED_FORMAT, SECRET, Issued, codes_shown, secret_of
 from coursework.issuing.roster import Student
@@ -87,7 +87,7 @@ def put_issued(connection: Connection, content: Mapping[str, Any], name: str = "
     items = [_item(item, position) for position, item in enumerate(content["issued"])]
     variants = _put_variants(connection, number, name, items)
     people = _people(connection, issued) if issued.has_roster and not issued.is_pool else {}
-    _put_dealt(connection, name, before, items, variants, people)
+    _put_assigned(connection, name, before, items, variants, people)
     return number
 
 
@@ -119,7 +119,7 @@ def _assignment(
         if values["has_roster"]:
             raise BadInput("{name} was issued without a roster: choose another name", name=name)
         raise BadInput("{name} was issued for a roster: choose another name", name=name)
-    rows = [row._asdict() for row in connection.execute(_dealt(known_row.id))]
+    rows = [row._asdict() for row in connection.execute(_assigned(known_row.id))]
     return known_row.id, dict(zip(_places(rows), rows, strict=True))
 
 
@@ -191,7 +191,7 @@ def _people(connection: Connection, issued: Issued) -> dict[str, int]:
     return {name: ids[student.draw_key] for name, student in students.items()}
 
 
-def _put_dealt(
+def _put_assigned(
     connection: Connection,
     name: str,
     before: Mapping[_Place, Any],
@@ -234,20 +234,21 @@ def _put_dealt(
             moved.append({"row": row["id"], "now": placed[place_key]})
     if moved:
         connection.execute(
-            update(dealt).where(dealt.c.id == bindparam("row")).values(place=bindparam("now")), moved
+            update(issue).where(issue.c.id == bindparam("row")).values(place=bindparam("now")),
+            moved,
         )
     if new:
-        connection.execute(insert(dealt), new)
+        connection.execute(insert(issue), new)
 
 
 # ---------------------------------------------------------------------- reading
 
 
-def _dealt(number: int | BindParameter[int]) -> Select[Any]:
-    columns = (*dealt.c, variant.c.exercise, variant.c.seed, variant.c.letter)
-    joined = dealt.join(variant)
+def _assigned(number: int | BindParameter[int]) -> Select[Any]:
+    columns = (*issue.c, variant.c.exercise, variant.c.seed, variant.c.letter)
+    joined = issue.join(variant)
     return (
-        select(*columns).select_from(joined).where(variant.c.assignment_id == number).order_by(dealt.c.place)
+        select(*columns).select_from(joined).where(variant.c.assignment_id == number).order_by(issue.c.place)
     )
 
 
@@ -275,7 +276,7 @@ def issued_content(
     if person_id is not None:
         items = _items_of(connection, number, person_id)
     elif student is not None:
-        items = _items(connection, number, dealt.c.student == student)
+        items = _items(connection, number, issue.c.student == student)
     is_of_person = person_id is not None and bool(items)
     return _content(about, items or _items(connection, number), is_of_person, about.secret if secret else "")
 
@@ -324,7 +325,7 @@ def sheet_content(
 @cache
 def _items_query() -> Select[Any]:
     """Return the query of :func:`_items_of`, cached."""
-    query = _dealt(bindparam("number")).where(dealt.c.person_id == bindparam("person"))
+    query = _assigned(bindparam("number")).where(issue.c.person_id == bindparam("person"))
     return query.add_columns(variant.c.record)
 
 
@@ -336,7 +337,7 @@ def _items_of(connection: Connection, number: int, person_id: int) -> list[dict[
 def _items(connection: Connection, number: int, *conditions: ColumnElement[bool]) -> list[dict[str, Any]]:
     if not conditions:
         return [item for _, item in _class_items(connection, number)]
-    given = _dealt(number).where(*conditions)  # few rows: one query
+    given = _assigned(number).where(*conditions)  # few rows: one query
     return [_issued_item(row, row.record) for row in connection.execute(given.add_columns(variant.c.record))]
 
 
@@ -344,7 +345,7 @@ def _class_items(connection: Connection, number: int) -> Iterator[tuple[Any, dic
     """Yield each issued item with its person's id, if there is one."""
     query = select(variant.c.id, variant.c.record).where(variant.c.assignment_id == number)
     records = {row.id: row.record for row in connection.execute(query)}
-    for row in connection.execute(_dealt(number)):
+    for row in connection.execute(_assigned(number)):
         yield row.person_id, _issued_item(row, records[row.variant_id])
 
 

@@ -88,7 +88,7 @@ def lines_of(connection: Connection, sheets: Iterable[LastMarking]) -> dict[int,
     order: dict[int, list[tuple[int, str]]] = {}
     for start in range(0, len(ids), _CHUNK):
         some = mark.c.marking_id.in_(ids[start : start + _CHUNK])
-        query = select(mark.c.marking_id, mark.c.came, *_LINE).where(some)
+        query = select(mark.c.marking_id, mark.c.received_place, *_LINE).where(some)
         for number, position, *sent in connection.execute(query.order_by(mark.c.marking_id, mark.c.place)):
             line = _line(sent)
             marks.setdefault(number, {})[line.part] = line

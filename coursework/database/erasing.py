@@ -19,15 +19,15 @@ from coursework.database.tables import (
     assignment,
     audit,
     class_summary,
-    dealt,
     decision,
-    delivery,
     extension,
+    issue,
     marking,
     placing,
     rejected,
     scanned,
     seen,
+    submission,
     typed,
     variant,
     worksheet,
@@ -42,7 +42,7 @@ _HEADS = ("stated", "asked")
 #: Texts that may name a person; answers of others are not among them.
 TELLING: tuple[tuple[Table, tuple[str, ...]], ...] = (
     (assignment, ("stated", "columns", "asked")),
-    (delivery, ("source",)),
+    (submission, ("source",)),
     (answer, ("source", "warning", "origin")),
     (rejected, ("source", "reason", "row")),
     (seen, ("source", "what")),
@@ -70,7 +70,7 @@ def erase(connection: Connection, number: int) -> dict[str, int]:
     for name, (table, theirs) in conditions(connection, known_as).items():
         gone[name] = connection.execute(delete(table).where(theirs)).rowcount
     connection.execute(delete(class_summary))  # which name everybody in the class
-    issued = exists().where(variant.c.assignment_id == assignment.c.id, dealt.c.variant_id == variant.c.id)
+    issued = exists().where(variant.c.assignment_id == assignment.c.id, issue.c.variant_id == variant.c.id)
     connection.execute(delete(assignment).where(assignment.c.link.is_not(None), ~issued))
     theirs = audit.c.actor == number
     connection.execute(update(audit).where(theirs).values(actor=None, address=None))

@@ -18,13 +18,13 @@ from coursework.database.publication import Publication
 from coursework.database.tables import (
     answer,
     assignment,
-    dealt,
     decision,
-    delivery,
     extension,
+    issue,
     marking,
     placing,
     progress,
+    submission,
     variant,
 )
 from coursework.gradebook.decisions import WITHDRAWN, Decision
@@ -41,7 +41,7 @@ class Stamp(NamedTuple):
     decisions: tuple[int, int]
     submissions: tuple[int, int]
     placings: tuple[int, int]
-    dealt: tuple[int, int]
+    issued: tuple[int, int]
     rules: tuple[int, int]  #: of publication, extensions and what is stated
 
     def __str__(self) -> str:
@@ -65,11 +65,11 @@ def stamp(connection: Connection, assignment_id: int) -> Stamp:
 def stamps(connection: Connection, assignment_ids: Collection[int]) -> dict[int, Stamp]:
     """Return the stamp of each assignment, from a few small queries."""
     counts: dict[int, list[tuple[int, int]]] = {number: [] for number in assignment_ids}
-    for table in (marking, decision, delivery, placing):
+    for table in (marking, decision, submission, placing):
         last_ids = select(table.c.assignment_id, func.count(), func.max(table.c.id))
         _add_counts(connection, counts, last_ids, table.c.assignment_id)
-    given = select(variant.c.assignment_id, func.count(), func.max(dealt.c.id))
-    _add_counts(connection, counts, given.select_from(dealt.join(variant)), variant.c.assignment_id)
+    given = select(variant.c.assignment_id, func.count(), func.max(issue.c.id))
+    _add_counts(connection, counts, given.select_from(issue.join(variant)), variant.c.assignment_id)
     stated = select(assignment.c.id, assignment.c.published, assignment.c.stated)
     rules = {
         number: crc32(json.dumps([list(row)], sort_keys=True).encode())
@@ -132,18 +132,18 @@ _LISTED = (
 def listed_assignments(connection: Connection, assignment_id: int | None = None) -> list[AssignmentOverview]:
     """Return the assignments, the latest first; one alone if given."""
     query = (
-        select(*_LISTED, func.count(delivery.c.id), func.max(delivery.c.id))
-        .select_from(assignment.outerjoin(delivery))
+        select(*_LISTED, func.count(submission.c.id), func.max(submission.c.id))
+        .select_from(assignment.outerjoin(submission))
         .group_by(assignment.c.id)
         .order_by(assignment.c.id.desc())
     )
     if assignment_id is not None:
         query = query.where(assignment.c.id == assignment_id)
     rows = connection.execute(query).all()
-    last = select(delivery.c.id, delivery.c.came).where(
-        delivery.c.id.in_([row[-1] for row in rows if row[-1]])
+    last = select(submission.c.id, submission.c.received_at).where(
+        submission.c.id.in_([row[-1] for row in rows if row[-1]])
     )
-    received_at = {row.id: row.came for row in connection.execute(last)}
+    received_at = {row.id: row.received_at for row in connection.execute(last)}
     return [
         AssignmentOverview._make((*row[:2], row.stated or {}, *row[3:-1], received_at.get(row[-1])))
         for row in rows
@@ -152,10 +152,10 @@ def listed_assignments(connection: Connection, assignment_id: int | None = None)
 
 def people_counts(connection: Connection) -> tuple[Counter[int], Counter[int]]:
     """Return the numbers of people with a paper, and of those who submitted something, by assignment."""
-    with_paper = select(variant.c.assignment_id, func.count(dealt.c.student.distinct())).join(dealt)
-    with_paper = with_paper.where(dealt.c.person_id.is_not(None)).group_by(variant.c.assignment_id)
-    submitted = select(delivery.c.assignment_id, func.count(delivery.c.person_id.distinct()))
-    queries = with_paper, submitted.group_by(delivery.c.assignment_id)
+    with_paper = select(variant.c.assignment_id, func.count(issue.c.student.distinct())).join(issue)
+    with_paper = with_paper.where(issue.c.person_id.is_not(None)).group_by(variant.c.assignment_id)
+    submitted = select(submission.c.assignment_id, func.count(submission.c.person_id.distinct()))
+    queries = with_paper, submitted.group_by(submission.c.assignment_id)
     holders, authors = (Counter({row[0]: row[1] for row in connection.execute(q)}) for q in queries)
     return holders, authors
 
@@ -194,7 +194,7 @@ class Placing(NamedTuple):
     """Placing of a rejected row by a person."""
 
     row: str  #: digest
-    delivery_id: int | None  #: of the answer that was made of it; none where it was put aside
+    submission_id: int | None  #: of the answer that was made of it; none where it was put aside
     reason: str
     by: str
     made: datetime
@@ -204,7 +204,7 @@ def placings(connection: Connection, assignment_id: int) -> dict[str, Placing]:
     """Return the placings of rejected rows by digest; the last of each row counts."""
     query = select(placing).where(placing.c.assignment_id == assignment_id).order_by(placing.c.id)
     rows = connection.execute(query)
-    return {row.row: Placing(row.row, row.delivery_id, row.reason, row.by, row.made) for row in rows}
+    return {row.row: Placing(row.row, row.submission_id, row.reason, row.by, row.made) for row in rows}
 
 
 def put_placing(connection: Connection, assignment_id: int, placed: Placing) -> None:
@@ -217,7 +217,7 @@ def drop_placing(connection: Connection, assignment_id: int, row: str) -> None:
     is_put_aside = (
         placing.c.assignment_id == assignment_id,
         placing.c.row == row,
-        placing.c.delivery_id.is_(None),
+        placing.c.submission_id.is_(None),
     )
     connection.execute(delete(placing).where(*is_put_aside))
 
@@ -237,9 +237,9 @@ def site_submissions_of(connection: Connection, assignment_id: int) -> dict[str,
     """Return the submissions on the site, by the student's name as issued."""
     names = {person: name for name, person in people_of(connection, assignment_id).items()}
     query = (
-        select(delivery.c.person_id, delivery.c.came, delivery.c.late)
-        .where(delivery.c.assignment_id == assignment_id, delivery.c.person_id.is_not(None))
-        .order_by(delivery.c.id)
+        select(submission.c.person_id, submission.c.received_at, submission.c.late)
+        .where(submission.c.assignment_id == assignment_id, submission.c.person_id.is_not(None))
+        .order_by(submission.c.id)
     )
     met: dict[str, SiteSubmissions] = {}
     for person, received_at, late in connection.execute(query):
@@ -250,19 +250,19 @@ def site_submissions_of(connection: Connection, assignment_id: int) -> dict[str,
 
 def unmarked(connection: Connection, assignment_id: int, before: datetime) -> list[int]:
     """Return the ids of submissions on the site that were received before a moment and are not marked yet."""
-    theirs = select(answer.c.student).where(answer.c.delivery_id == delivery.c.id)
+    theirs = select(answer.c.student).where(answer.c.submission_id == submission.c.id)
     marked = select(marking.c.id).where(
         marking.c.assignment_id == assignment_id,
-        marking.c.attempt == delivery.c.number,
+        marking.c.attempt == submission.c.number,
         marking.c.student.in_(theirs),
     )
-    query = select(delivery.c.id).where(
-        delivery.c.assignment_id == assignment_id,
-        delivery.c.number > 0,
-        delivery.c.came < before,
+    query = select(submission.c.id).where(
+        submission.c.assignment_id == assignment_id,
+        submission.c.number > 0,
+        submission.c.received_at < before,
         ~marked.exists(),
     )
-    return list(connection.execute(query.order_by(delivery.c.id)).scalars())
+    return list(connection.execute(query.order_by(submission.c.id)).scalars())
 
 
 def students_since(connection: Connection, assignment_id: int, before: Stamp) -> set[str]:
@@ -280,9 +280,9 @@ def students_since(connection: Connection, assignment_id: int, before: Stamp) ->
 def people_of(connection: Connection, assignment_id: int) -> dict[str, int]:
     """Return the person's id of each student of an assignment, by the name as issued."""
     query = (
-        select(dealt.c.student, dealt.c.person_id)
+        select(issue.c.student, issue.c.person_id)
         .join(variant)
-        .where(variant.c.assignment_id == assignment_id, dealt.c.person_id.is_not(None))
+        .where(variant.c.assignment_id == assignment_id, issue.c.person_id.is_not(None))
         .distinct()
     )
     return {row.student: row.person_id for row in connection.execute(query)}

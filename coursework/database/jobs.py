@@ -27,7 +27,7 @@ class WorkerJob(NamedTuple):
     #: person's page.
     kind: str
     assignment: int
-    delivery: int | None
+    submission: int | None
     person: int | None
     tries: int  #: how often it was begun, this time included
     fault: str
@@ -39,7 +39,7 @@ _COLUMNS = (
     job.c.id,
     job.c.kind,
     job.c.assignment_id,
-    job.c.delivery_id,
+    job.c.submission_id,
     job.c.person_id,
     job.c.tries,
     job.c.fault,
@@ -53,14 +53,14 @@ def put_job(
     assignment: int,
     at: datetime,
     *,
-    delivery: int | None = None,
+    submission: int | None = None,
     person: int | None = None,
 ) -> None:
     """Add a job, in the transaction that requires it."""
     row = {
         "kind": kind,
         "assignment_id": assignment,
-        "delivery_id": delivery,
+        "submission_id": submission,
         "person_id": person,
         "made": at,
     }
@@ -109,9 +109,9 @@ def drop_job(connection: Connection, number: int) -> None:
     connection.execute(delete(job).where(job.c.id == number))
 
 
-def drop_jobs(connection: Connection, delivery: int) -> None:
+def drop_jobs(connection: Connection, submission: int) -> None:
     """Delete the jobs that mark a submission, which is marked."""
-    connection.execute(delete(job).where(job.c.delivery_id == delivery))
+    connection.execute(delete(job).where(job.c.submission_id == submission))
 
 
 def put_back(connection: Connection, failed: WorkerJob, fault: str) -> bool:
@@ -130,10 +130,10 @@ def give_up(connection: Connection, number: int, fault: str) -> None:
     connection.execute(update(job).where(job.c.id == number).values(fault=fault, worker="", until=None))
 
 
-def job_of(connection: Connection, delivery: int) -> WorkerJob | None:
+def job_of(connection: Connection, submission: int) -> WorkerJob | None:
     """Return the job that marks a submission; None if it is marked, or no job was added."""
     row = connection.execute(
-        select(*_COLUMNS).where(job.c.delivery_id == delivery, job.c.kind == MARK)
+        select(*_COLUMNS).where(job.c.submission_id == submission, job.c.kind == MARK)
     ).first()
     return None if row is None else WorkerJob(*row)
 

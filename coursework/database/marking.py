@@ -17,7 +17,7 @@ from coursework.database.decisions import read_decisions
 from coursework.database.states import exercise_state, sheet_state
 from coursework.database.store import Store
 from coursework.database.submissions import rows_of
-from coursework.database.tables import assignment, delivery, mark, marking
+from coursework.database.tables import assignment, mark, marking, submission
 from coursework.errors import BadInput
 from coursework.gradebook.book import marks_rows
 from coursework.gradebook.class_marking import judged, record_of, rules_of
@@ -66,34 +66,36 @@ class Work:
         course: Course,
         store: Store,
         assignment_id: int,
-        delivery_id: int | None = None,
+        submission_id: int | None = None,
         within: Connection | None = None,
     ):
         self.course, self.store, self.assignment_id = course, store, assignment_id
         self.now: dict[SheetKey, Graded | str] = {}
         with nullcontext(within) if within is not None else store.reading() as connection:
-            self._read(connection, delivery_id)
+            self._read(connection, submission_id)
 
-    def _read(self, connection: Connection, delivery_id: int | None) -> None:
+    def _read(self, connection: Connection, submission_id: int | None) -> None:
         course, assignment_id = self.course, self.assignment_id
-        person_id = None if delivery_id is None else _person_of(connection, delivery_id)
+        person_id = None if submission_id is None else _person_of(connection, submission_id)
         self.issued: Issued = issued_of(connection, assignment_id, person_id)
         for exercise in self.issued.exercises:
             exercise_state(course, exercise)  # before it is loaded
-        only = delivery_id if person_id is not None else None
+        only = submission_id if person_id is not None else None
         rows = list(rows_of(connection, assignment_id, only))
         self.sheets: Sheets = placed_sheets(course, self.issued, rows)
         self.places: Collection[SheetKey] = self.sheets.sheets
-        if delivery_id is not None and person_id is None:
+        if submission_id is not None and person_id is None:
             own_sheets = placed_sheets(
-                course, issued_of(connection, assignment_id), rows_of(connection, assignment_id, delivery_id)
+                course,
+                issued_of(connection, assignment_id),
+                rows_of(connection, assignment_id, submission_id),
             )
             self.places = [sheet for sheet in self.sheets.sheets if sheet in own_sheets.sheets]
         students = {sheet[0] for sheet in self.places}
-        student = self._student = students.pop() if len(students) == 1 and delivery_id is not None else None
+        student = self._student = students.pop() if len(students) == 1 and submission_id is not None else None
         self.last: dict[SheetKey, LastMarking] = last_markings(connection, assignment_id, student)
         self.decisions = read_decisions(connection, assignment_id, student)
-        self.is_whole = delivery_id is None
+        self.is_whole = submission_id is None
         rules = rules_of(course, self.issued)
         self.states = {sheet: self._state(sheet, rules) for sheet in self.places}
 
@@ -200,7 +202,7 @@ def mark_new(course: Course, store: Store, assignment_id: int) -> MarkedNow:
     return mark_changed(course, store, assignment_id).summary()
 
 
-def mark_submission(course: Course, store: Store, delivery_id: int) -> MarkedNow:
+def mark_submission(course: Course, store: Store, submission_id: int) -> MarkedNow:
     """Mark the changed sheets of one submission.
 
     Raises
@@ -211,11 +213,11 @@ def mark_submission(course: Course, store: Store, delivery_id: int) -> MarkedNow
         The course cannot mark the issued exercises.
     """
     with store.reading() as connection:
-        query = select(delivery.c.assignment_id).where(delivery.c.id == delivery_id)
+        query = select(submission.c.assignment_id).where(submission.c.id == submission_id)
         assignment_id = connection.execute(query).scalar()
     if assignment_id is None:
-        raise BadInput("no submission number {number} in the database", number=delivery_id)
-    return mark_changed(course, store, assignment_id, delivery_id).summary()
+        raise BadInput("no submission number {number} in the database", number=submission_id)
+    return mark_changed(course, store, assignment_id, submission_id).summary()
 
 
 def would_change(course: Course, store: Store, assignment_id: int) -> MarkedNow:
@@ -225,10 +227,10 @@ def would_change(course: Course, store: Store, assignment_id: int) -> MarkedNow:
     return work.summary()
 
 
-def mark_changed(course: Course, store: Store, assignment_id: int, delivery_id: int | None = None) -> Work:
+def mark_changed(course: Course, store: Store, assignment_id: int, submission_id: int | None = None) -> Work:
     """Mark the changed sheets of an assignment, or of a submission; store their marks, and return the work
     with all sheets."""
-    return mark_and_store(Work(course, store, assignment_id, delivery_id))
+    return mark_and_store(Work(course, store, assignment_id, submission_id))
 
 
 def mark_and_store(work: Work) -> Work:
@@ -242,8 +244,8 @@ def mark_and_store(work: Work) -> Work:
     return work
 
 
-def _person_of(connection: Connection, delivery_id: int) -> int | None:
-    return connection.execute(select(delivery.c.person_id).where(delivery.c.id == delivery_id)).scalar()
+def _person_of(connection: Connection, submission_id: int) -> int | None:
+    return connection.execute(select(submission.c.person_id).where(submission.c.id == submission_id)).scalar()
 
 
 def _only(sheets: Sheets, places: Iterable[SheetKey]) -> Sheets:
@@ -306,7 +308,7 @@ def _marks(number: int, result: Graded | str) -> Iterator[dict[str, Any]]:
         yield {
             "marking_id": number,
             "place": position,
-            "came": order.get(line.part),
+            "received_place": order.get(line.part),
             **line._asdict(),
             "matches": list(line.matches),
         }

@@ -14,13 +14,12 @@ from coursework.database.tables import (
     area,
     assignment,
     audit,
-    dealt,
     decision,
-    delivery,
     draft,
     drawing,
     extension,
     identity,
+    issue,
     lti_launch,
     lti_session,
     mark,
@@ -32,6 +31,7 @@ from coursework.database.tables import (
     rejected,
     scanned,
     session,
+    submission,
     typed,
     variant,
 )
@@ -42,10 +42,10 @@ from coursework.issuing.students import folded
 _HIDDEN = {
     "account": {"secret", "invitation"},
     "session": {"digest"},
-    "delivery": {"digest"},
+    "submission": {"digest"},
     "progress": {"digest"},
     "marking": {"state"},
-    "prepared": {"state", "head", "body"},  # the paper may not be open yet; ``dealt`` contains it
+    "prepared": {"state", "head", "body"},  # the paper may not be open yet; ``issue`` contains it
     "lti_session": {"digest"},
     "lti_launch": {"link"},
 }
@@ -74,9 +74,9 @@ def identifiers_of(connection: Connection, number: int) -> PersonIdentifiers | N
     if mine is None:
         return None
     issued = (
-        select(variant.c.assignment_id, dealt.c.student)
+        select(variant.c.assignment_id, issue.c.student)
         .join(variant)
-        .where(dealt.c.person_id == number)
+        .where(issue.c.person_id == number)
         .distinct()
     )
     students = {(row.assignment_id, folded(row.student)) for row in connection.execute(issued)}
@@ -107,22 +107,27 @@ def conditions(
 ) -> dict[str, tuple[Table, ColumnElement[bool]]]:
     """Return the condition that selects the person's rows of each table, in an order in which they can be
     deleted."""
-    deliveries = select(delivery.c.id).where(delivery.c.person_id == known_as.person)
+    submissions = select(submission.c.id).where(submission.c.person_id == known_as.person)
     markings = ids_of(connection, marking, known_as)
-    own_answers = or_(answer.c.delivery_id.in_(deliveries), answer.c.id.in_(_answers(connection, known_as)))
+    own_answers = or_(
+        answer.c.submission_id.in_(submissions), answer.c.id.in_(_answers(connection, known_as))
+    )
     return {
         "mark": (mark, mark.c.marking_id.in_(markings)),
         "marking": (marking, marking.c.id.in_(markings)),
         "decision": (decision, decision.c.id.in_(ids_of(connection, decision, known_as))),
         "answer": (answer, own_answers),
-        "drawing": (drawing, drawing.c.delivery_id.in_(deliveries)),
+        "drawing": (drawing, drawing.c.submission_id.in_(submissions)),
         "rejected": (rejected, rejected.c.id.in_(_rejected(connection, known_as))),
-        "delivery": (delivery, delivery.c.person_id == known_as.person),
+        "submission": (submission, submission.c.person_id == known_as.person),
         "scanned": (scanned, scanned.c.id.in_(ids_of(connection, scanned, known_as))),
         "typed": (typed, typed.c.id.in_(ids_of(connection, typed, known_as))),
-        "dealt": (
-            dealt,
-            or_(dealt.c.person_id == known_as.person, dealt.c.id.in_(_dealt(connection, known_as))),
+        "issue": (
+            issue,
+            or_(
+                issue.c.person_id == known_as.person,
+                issue.c.id.in_(_assigned(connection, known_as)),
+            ),
         ),
         "extension": (extension, extension.c.person_id == known_as.person),
         "paper_start": (paper_start, paper_start.c.person_id == known_as.person),
@@ -164,12 +169,12 @@ def _named(connection: Connection, query: Select[Any], known_as: PersonIdentifie
     return [row.id for row in rows if known_as.answers_to(row.assignment_id, row.student)]
 
 
-def _dealt(connection: Connection, known_as: PersonIdentifiers) -> list[int]:
+def _assigned(connection: Connection, known_as: PersonIdentifiers) -> list[int]:
     """Return the ids of the variants issued under the person's name without a roster."""
     query = (
-        select(dealt.c.id, dealt.c.student, variant.c.assignment_id)
+        select(issue.c.id, issue.c.student, variant.c.assignment_id)
         .join(variant)
-        .where(dealt.c.person_id.is_(None), dealt.c.student != "")
+        .where(issue.c.person_id.is_(None), issue.c.student != "")
     )
     return _named(connection, query, known_as)
 
@@ -177,9 +182,9 @@ def _dealt(connection: Connection, known_as: PersonIdentifiers) -> list[int]:
 def _answers(connection: Connection, known_as: PersonIdentifiers) -> list[int]:
     numbers = {number for number, _ in known_as.students}
     query = (
-        select(answer.c.id, delivery.c.assignment_id, answer.c.student)
-        .join(delivery)
-        .where(delivery.c.assignment_id.in_(numbers))
+        select(answer.c.id, submission.c.assignment_id, answer.c.student)
+        .join(submission)
+        .where(submission.c.assignment_id.in_(numbers))
     )
     return _named(connection, query, known_as)
 
@@ -202,7 +207,7 @@ def personal_data(connection: Connection, known_as: PersonIdentifiers) -> dict[s
         columns = [column for column in table.c if column.name not in _HIDDEN.get(name, ())]
         chosen = select(*columns).where(mine).order_by(*table.primary_key)
         data[name] = [dict(row._mapping) for row in connection.execute(chosen)]
-    data["dealt"] = _papers(connection, chosen_by["dealt"][1])
+    data["issue"] = _papers(connection, chosen_by["issue"][1])
     noted = connection.execute(select(audit).order_by(audit.c.id))
     data["audit"] = [_of_audit(row, known_as) for row in noted if _tells_of(row, known_as)]
     return data
@@ -230,15 +235,15 @@ def _papers(connection: Connection, mine: ColumnElement[bool]) -> list[dict[str,
         select(
             assignment.c.id.label("assignment_id"),
             assignment.c.name.label("assignment"),
-            dealt.c.student,
-            dealt.c.sitting,
-            dealt.c.lang,
+            issue.c.student,
+            issue.c.sitting,
+            issue.c.lang,
             variant.c.exercise,
             variant.c.seed,
             variant.c.record,
         )
-        .select_from(dealt.join(variant).join(assignment))
+        .select_from(issue.join(variant).join(assignment))
         .where(mine)
-        .order_by(dealt.c.id)
+        .order_by(issue.c.id)
     )
     return [dict(row._mapping) for row in connection.execute(query)]

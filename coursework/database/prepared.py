@@ -10,7 +10,7 @@ from sqlalchemy import ColumnElement, Connection, delete, insert, literal, selec
 
 from coursework.database.jobs import PREPARE
 from coursework.database.store import put_rows
-from coursework.database.tables import UTCDateTime, dealt, job, person, prepared, variant
+from coursework.database.tables import UTCDateTime, issue, job, person, prepared, variant
 
 
 class PreparedPieces(NamedTuple):
@@ -54,7 +54,7 @@ def drop_prepared(connection: Connection, number: int) -> None:
 def prepare_later(connection: Connection, number: int, at: datetime, person_id: int | None = None) -> None:
     """Add a job for each person with a paper of an assignment, or for one person, unless such a job waits
     already."""
-    theirs = select(dealt.c.person_id).join(variant).where(variant.c.assignment_id == number)
+    theirs = select(issue.c.person_id).join(variant).where(variant.c.assignment_id == number)
     waits = select(job.c.person_id).where(
         job.c.assignment_id == number, job.c.kind == PREPARE, job.c.until.is_(None)
     )

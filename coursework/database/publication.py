@@ -31,7 +31,15 @@ from sqlalchemy import (
     update,
 )
 
-from coursework.database.tables import assignment, dealt, delivery, extension, paper_start, person, variant
+from coursework.database.tables import (
+    assignment,
+    extension,
+    issue,
+    paper_start,
+    person,
+    submission,
+    variant,
+)
 from coursework.issuing.exam_columns import with_extra
 
 #: Release of marks and feedback, and of right answers and worked solutions.
@@ -318,14 +326,14 @@ def late_penalties(connection: Connection, number: int) -> dict[tuple[str, int],
     if publication is None or publication.late != CHARGE:
         return {}
     theirs = extensions(connection, number)
-    late = select(delivery).where(delivery.c.assignment_id == number, delivery.c.late > 0)
-    names = select(dealt.c.person_id, dealt.c.student).join(variant).where(variant.c.assignment_id == number)
+    late = select(submission).where(submission.c.assignment_id == number, submission.c.late > 0)
+    names = select(issue.c.person_id, issue.c.student).join(variant).where(variant.c.assignment_id == number)
     student_names = {row.person_id: row.student for row in connection.execute(names)}
     shares = {}
     for row in connection.execute(late):
         extended = publication.extended(theirs.get(row.person_id))
         if row.person_id in student_names and (
-            share := extended.charged(min(row.late, extended.late_seconds(row.came)))
+            share := extended.charged(min(row.late, extended.late_seconds(row.received_at)))
         ):
             shares[student_names[row.person_id], row.number] = share
     return shares
@@ -416,13 +424,13 @@ def _times_query(*conditions: ColumnElement[bool]) -> Select[Any]:
     papers = (
         select(
             variant.c.assignment_id,
-            dealt.c.person_id,
-            func.max(dealt.c.sitting).label("sitting"),
+            issue.c.person_id,
+            func.max(issue.c.sitting).label("sitting"),
             person.c.extra_time,
         )
-        .select_from(person.join(dealt, dealt.c.person_id == person.c.id).join(variant))
+        .select_from(person.join(issue, issue.c.person_id == person.c.id).join(variant))
         .where(variant.c.assignment_id.in_(numbers), *conditions)
-        .group_by(variant.c.assignment_id, dealt.c.person_id, person.c.extra_time)
+        .group_by(variant.c.assignment_id, issue.c.person_id, person.c.extra_time)
         .subquery()
     )
     mine, begun = papers.c, paper_start.c
@@ -552,10 +560,10 @@ def _student_assignments_query(is_of_one: bool) -> Select[Any]:
     """Return the query of :func:`student_assignments`, cached since many requests execute it, with the
     person's last extension and the start of the current paper."""
     columns = assignment.c
-    last_sitting = func.max(dealt.c.sitting).label("sitting")
-    theirs = select(variant.c.assignment_id, dealt.c.student, last_sitting).join(variant)
-    theirs = theirs.where(dealt.c.person_id == bindparam("person"))
-    mine = theirs.group_by(variant.c.assignment_id, dealt.c.student).subquery()
+    last_sitting = func.max(issue.c.sitting).label("sitting")
+    theirs = select(variant.c.assignment_id, issue.c.student, last_sitting).join(variant)
+    theirs = theirs.where(issue.c.person_id == bindparam("person"))
+    mine = theirs.group_by(variant.c.assignment_id, issue.c.student).subquery()
     begun = paper_start.c
     of_paper = (
         begun.assignment_id == columns.id,

@@ -21,15 +21,15 @@ class ScannedPage(NamedTuple):
     file: str
     number: int  #: 0 for a file
     student: str
-    kept: Mapping[str, Any]  #: what was read
-    came: datetime
+    reading: Mapping[str, Any]  #: what was read
+    received_at: datetime
 
 
 def put_scanned(connection: Connection, assignment_id: int, page: ScannedPage, picture: bytes) -> bool:
     """Store a page; return True if it is new. An existing page stays as it is."""
     row = {
         **page._asdict(),
-        "kept": dict(page.kept),
+        "reading": dict(page.reading),
         "assignment_id": assignment_id,
         "picture": base64.b64encode(picture).decode(),
     }

@@ -32,7 +32,16 @@ from sqlalchemy import (
 
 from coursework.database.assignments import issued_of
 from coursework.database.store import insert_unless_there
-from coursework.database.tables import answer, dealt, delivery, drawing, marking, rejected, seen, variant
+from coursework.database.tables import (
+    answer,
+    drawing,
+    issue,
+    marking,
+    rejected,
+    seen,
+    submission,
+    variant,
+)
 from coursework.gradebook.placing import UnplacedError, student_of
 from coursework.gradebook.rows import AnswerRow, PlatformFile, Rejected, RowOrigin
 from coursework.issuing.issued import Issued
@@ -77,20 +86,26 @@ def insert_submission(
     remain stored, and count no more. Rows of a file about a student who submitted on the site become a later
     attempt, unless the rows state it (``in_place``).
     """
-    came_rows = list(rows)
-    digest = _digest(came_rows, person_id)
+    rows = list(rows)
+    digest = _digest(rows, person_id)
     if person_id is None and not in_place:
-        came_rows = _after_attempts_on_site(connection, assignment_id, came_rows)
+        rows = _after_attempts_on_site(connection, assignment_id, rows)
     receipt = _receipt(assignment_id, digest)
-    values = {"source": source, "number": number, "receipt": receipt, "late": late, "came": received_at}
+    values = {
+        "source": source,
+        "number": number,
+        "receipt": receipt,
+        "late": late,
+        "received_at": received_at,
+    }
     row = {"assignment_id": assignment_id, "person_id": person_id, "digest": digest, **values}
-    number_added = insert_unless_there(connection, delivery, row, ("assignment_id", "digest"))
+    number_added = insert_unless_there(connection, submission, row, ("assignment_id", "digest"))
     if number_added is None:
         earlier = submission_alike(connection, assignment_id, digest)
         if replaces:
             _replace(connection, assignment_id, earlier.id, source, received_at)
         return earlier
-    _put_rows(connection, number_added, came_rows)
+    _put_rows(connection, number_added, rows)
     if replaces:
         _replace(connection, assignment_id, number_added, source, received_at)
     return Submission(number_added, True, source, number, receipt, late, received_at)
@@ -101,8 +116,8 @@ def _after_attempts_on_site(
 ) -> list[AnswerRow | Rejected | PlatformFile]:
     """Return the rows of a file; those of students who submitted on the site get a later attempt number, so
     that two submissions are never merged."""
-    on_site = delivery.c.assignment_id == assignment_id, delivery.c.number > 0
-    query = select(answer.c.student, func.max(delivery.c.number)).join(delivery).where(*on_site)
+    on_site = submission.c.assignment_id == assignment_id, submission.c.number > 0
+    query = select(answer.c.student, func.max(submission.c.number)).join(submission).where(*on_site)
     tries = {row[0]: row[1] for row in connection.execute(query.group_by(answer.c.student))}
     if not tries:
         return rows
@@ -127,10 +142,10 @@ def _student_or_none(issued: Issued, row: AnswerRow) -> str | None:
 
 def _replace(connection: Connection, assignment_id: int, number: int, source: str, at: datetime) -> None:
     """Let one file replace all others from its source."""
-    files = delivery.c.assignment_id == assignment_id, delivery.c.person_id.is_(None)
-    others = *files, delivery.c.source == source, delivery.c.id != number, delivery.c.replaced.is_(None)
-    connection.execute(update(delivery).where(*others).values(replaced=at))
-    connection.execute(update(delivery).where(delivery.c.id == number).values(replaced=None))
+    files = submission.c.assignment_id == assignment_id, submission.c.person_id.is_(None)
+    others = *files, submission.c.source == source, submission.c.id != number, submission.c.replaced.is_(None)
+    connection.execute(update(submission).where(*others).values(replaced=at))
+    connection.execute(update(submission).where(submission.c.id == number).values(replaced=None))
 
 
 def next_number(connection: Connection, assignment_id: int, person_id: int, student: str) -> int:
@@ -154,13 +169,15 @@ def _sittings_query() -> CompoundSelect[Any]:
     student: BindParameter[str] = bindparam("student")
     in_files = (
         select(literal_column("0").label("is_known"), literal_column("0").label("sitting"), answer.c.origin)
-        .join(delivery)
-        .where(delivery.c.assignment_id == of_it, delivery.c.person_id.is_(None), answer.c.student == student)
+        .join(submission)
+        .where(
+            submission.c.assignment_id == of_it, submission.c.person_id.is_(None), answer.c.student == student
+        )
     )
-    theirs = delivery.c.assignment_id == of_it, delivery.c.person_id == bindparam("person")
+    theirs = submission.c.assignment_id == of_it, submission.c.person_id == bindparam("person")
     named = marking.c.assignment_id == of_it, marking.c.student == student
     return in_files.union_all(
-        select(literal_column("1"), func.coalesce(func.max(delivery.c.number), 0), null()).where(*theirs),
+        select(literal_column("1"), func.coalesce(func.max(submission.c.number), 0), null()).where(*theirs),
         select(literal_column("1"), func.coalesce(func.max(marking.c.sitting), 0), null()).where(*named),
     )
 
@@ -173,10 +190,10 @@ def is_current(
 ) -> bool:
     """Return True if these rows are those of the submission from a source that counts; without rows, if there
     is none."""
-    found = select(delivery.c.digest).where(
-        delivery.c.assignment_id == assignment_id,
-        delivery.c.source == source,
-        delivery.c.replaced.is_(None),
+    found = select(submission.c.digest).where(
+        submission.c.assignment_id == assignment_id,
+        submission.c.source == source,
+        submission.c.replaced.is_(None),
     )
     digests = {*connection.execute(found).scalars()}
     return digests == {_digest(rows, None)} or not (digests or rows)
@@ -185,7 +202,7 @@ def is_current(
 def submission_alike(connection: Connection, assignment_id: int, digest: str) -> Submission:
     """Return the submission with the given digest."""
     row = connection.execute(
-        select(delivery).where(delivery.c.assignment_id == assignment_id, delivery.c.digest == digest)
+        select(submission).where(submission.c.assignment_id == assignment_id, submission.c.digest == digest)
     ).one()
     return _submission(row, is_new=False)
 
@@ -193,14 +210,14 @@ def submission_alike(connection: Connection, assignment_id: int, digest: str) ->
 def submissions_of_student(connection: Connection, assignment_id: int, student: str) -> list[Submission]:
     """Return the submissions of a student, in order: those on the site, and files that name the student as
     issued."""
-    named = select(answer.c.delivery_id).where(answer.c.student == student)
-    of_student = delivery.c.assignment_id == assignment_id, delivery.c.id.in_(named)
-    rows = connection.execute(select(delivery).where(*of_student).order_by(delivery.c.id))
+    named = select(answer.c.submission_id).where(answer.c.student == student)
+    of_student = submission.c.assignment_id == assignment_id, submission.c.id.in_(named)
+    rows = connection.execute(select(submission).where(*of_student).order_by(submission.c.id))
     return [_submission(row, is_new=False) for row in rows]
 
 
 def _submission(row: Any, *, is_new: bool) -> Submission:
-    return Submission(row.id, is_new, row.source, row.number, row.receipt, row.late, row.came)
+    return Submission(row.id, is_new, row.source, row.number, row.receipt, row.late, row.received_at)
 
 
 def _put_rows(
@@ -209,7 +226,7 @@ def _put_rows(
     by_table: dict[Any, list[dict[str, Any]]] = {answer: [], rejected: [], seen: []}
     origins: dict[RowOrigin, dict[str, Any]] = {}
     for position, row in enumerate(rows):
-        key = {"delivery_id": number, "place": position}
+        key = {"submission_id": number, "place": position}
         if isinstance(row, AnswerRow):
             columns = {**row._asdict(), "answer": _as_json(row.answer)}
             if row.origin is not None:
@@ -224,11 +241,11 @@ def _put_rows(
             connection.execute(insert(table), lines[start : start + _CHUNK])
 
 
-def put_drawings(connection: Connection, submission: Submission, texts: Mapping[str, str]) -> None:
+def put_drawings(connection: Connection, stored: Submission, texts: Mapping[str, str]) -> None:
     """Store the drawings of a submission, by exercise."""
     rows = [{"exercise": exercise, "text": text} for exercise, text in texts.items()]
     if rows:
-        connection.execute(insert(drawing), [{"delivery_id": submission.id, **row} for row in rows])
+        connection.execute(insert(drawing), [{"submission_id": stored.id, **row} for row in rows])
 
 
 # ---------------------------------------------------------------------- reading
@@ -237,10 +254,10 @@ def put_drawings(connection: Connection, submission: Submission, texts: Mapping[
 def drawings_of(connection: Connection, assignment_id: int, student: str) -> dict[tuple[int, str], str]:
     """Return the drawings that a student submitted for an assignment, by attempt and exercise."""
     query = (
-        select(delivery.c.number, drawing.c.exercise, drawing.c.text)
-        .join(drawing, drawing.c.delivery_id == delivery.c.id)
-        .where(delivery.c.assignment_id == assignment_id)
-        .where(exists().where(answer.c.delivery_id == delivery.c.id, answer.c.student == student))
+        select(submission.c.number, drawing.c.exercise, drawing.c.text)
+        .join(drawing, drawing.c.submission_id == submission.c.id)
+        .where(submission.c.assignment_id == assignment_id)
+        .where(exists().where(answer.c.submission_id == submission.c.id, answer.c.student == student))
     )
     return {(row.number, row.exercise): row.text for row in connection.execute(query)}
 
@@ -273,15 +290,15 @@ def _of_assignments(column: Column[int]) -> ColumnElement[bool]:
 @cache
 def _submissions_query(is_of_one: bool) -> Select[Any]:
     """Return the query of :func:`submissions_by_assignment`, cached since many requests execute it."""
-    query = select(delivery).where(_of_assignments(delivery.c.assignment_id))
+    query = select(submission).where(_of_assignments(submission.c.assignment_id))
     if is_of_one:
-        query = query.where(delivery.c.person_id == bindparam("person"))
-    return query.order_by(delivery.c.id)
+        query = query.where(submission.c.person_id == bindparam("person"))
+    return query.order_by(submission.c.id)
 
 
-def answers_of(connection: Connection, delivery_id: int) -> list[list[str]]:
+def answers_of(connection: Connection, submission_id: int) -> list[list[str]]:
     """Return exercise, seed, part and answer of each question of a submission, in order."""
-    rows = connection.execute(_answers_query(), {"delivery": delivery_id})
+    rows = connection.execute(_answers_query(), {"submission": submission_id})
     return [[*row[:3], str(_from_json(row.answer) or "")] for row in rows]
 
 
@@ -289,15 +306,15 @@ def answers_of(connection: Connection, delivery_id: int) -> list[list[str]]:
 def _answers_query() -> Select[Any]:
     """Return the query of :func:`answers_of`, cached."""
     columns = answer.c.exercise, answer.c.seed, answer.c.part, answer.c.answer
-    return select(*columns).where(answer.c.delivery_id == bindparam("delivery")).order_by(answer.c.place)
+    return select(*columns).where(answer.c.submission_id == bindparam("submission")).order_by(answer.c.place)
 
 
 @cache
 def _papers_query() -> Select[Any]:
     """Return the query of a person's papers, cached."""
-    theirs = _of_assignments(variant.c.assignment_id), dealt.c.person_id == bindparam("person")
-    columns = variant.c.assignment_id, dealt.c.sitting, variant.c.exercise, variant.c.seed
-    return select(*columns).select_from(dealt.join(variant)).where(*theirs)
+    theirs = _of_assignments(variant.c.assignment_id), issue.c.person_id == bindparam("person")
+    columns = variant.c.assignment_id, issue.c.sitting, variant.c.exercise, variant.c.seed
+    return select(*columns).select_from(issue.join(variant)).where(*theirs)
 
 
 def attempts_used(
@@ -318,8 +335,8 @@ def attempts_used(
         papers.setdefault(number, {}).setdefault(sitting, set()).add(tuple(sheet))
     last = {number: sheets[max(sheets)] for number, sheets in papers.items() if max(sheets) > 1}
     if last:
-        of_them = answer.c.delivery_id.in_([one for number in last for one in tries[number]])
-        query = select(answer.c.delivery_id, answer.c.exercise, answer.c.seed).where(of_them).distinct()
+        of_them = answer.c.submission_id.in_([one for number in last for one in tries[number]])
+        query = select(answer.c.submission_id, answer.c.exercise, answer.c.seed).where(of_them).distinct()
         sheets_of: dict[int, set[tuple[str, str]]] = {}
         for submitted, *sheet in connection.execute(query):
             sheets_of.setdefault(submitted, set()).add(tuple(sheet))
@@ -329,7 +346,7 @@ def attempts_used(
 
 
 def rows_of(
-    connection: Connection, assignment_id: int, delivery_id: int | None = None
+    connection: Connection, assignment_id: int, submission_id: int | None = None
 ) -> Iterator[AnswerRow | Rejected | PlatformFile]:
     """Yield the rows that count, in the order in which they were received; if a submission is given, all of
     its rows and no others.
@@ -338,14 +355,14 @@ def rows_of(
     """
 
     def of(table: Any) -> Select[Any]:
-        columns = [c for c in table.c if c.name not in ("id", "delivery_id", "place")]
-        query = select(table.c.delivery_id, table.c.place, *columns)
-        if delivery_id is not None:
-            return query.where(table.c.delivery_id == delivery_id).order_by(table.c.place)
-        query = query.join(delivery).where(
-            delivery.c.assignment_id == assignment_id, delivery.c.replaced.is_(None)
+        columns = [c for c in table.c if c.name not in ("id", "submission_id", "place")]
+        query = select(table.c.submission_id, table.c.place, *columns)
+        if submission_id is not None:
+            return query.where(table.c.submission_id == submission_id).order_by(table.c.place)
+        query = query.join(submission).where(
+            submission.c.assignment_id == assignment_id, submission.c.replaced.is_(None)
         )
-        return query.order_by(table.c.delivery_id, table.c.place)
+        return query.order_by(table.c.submission_id, table.c.place)
 
     met: dict[str, RowOrigin] = {}
     refused: list[_PlacedRow] = [

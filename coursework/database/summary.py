@@ -8,7 +8,7 @@ from sqlalchemy import Connection, Select, distinct, func, select
 
 from coursework.database.assignments import names
 from coursework.database.current_marks import answers_waiting
-from coursework.database.tables import answer, dealt, decision, delivery, marking, variant
+from coursework.database.tables import answer, decision, issue, marking, submission, variant
 
 
 class Summary(NamedTuple):
@@ -17,7 +17,7 @@ class Summary(NamedTuple):
     assignment: str
     students: int  #: with a variant of their own
     variants: int
-    deliveries: int
+    submissions: int
     answers: int
     sheets: int  #: marked
     markings: int  #: of sheets, with those that others took the place of
@@ -35,17 +35,17 @@ def _summary(connection: Connection, name: str, number: int) -> Summary:
         return int(connection.execute(counted).scalar() or 0)
 
     issued = variant.c.assignment_id == number
-    query = select(func.count(distinct(dealt.c.student))).select_from(dealt.join(variant))
+    query = select(func.count(distinct(issue.c.student))).select_from(issue.join(variant))
     answered = (
-        select(func.count()).select_from(answer.join(delivery)).where(delivery.c.assignment_id == number)
+        select(func.count()).select_from(answer.join(submission)).where(submission.c.assignment_id == number)
     )
     sheet = (marking.c.student, marking.c.exercise, marking.c.seed, marking.c.attempt)
     sheets = select(*sheet).where(marking.c.assignment_id == number).distinct().subquery()
     return Summary(
         name,
-        count(query.where(issued, dealt.c.student != "")),
+        count(query.where(issued, issue.c.student != "")),
         count(select(func.count()).select_from(variant).where(issued)),
-        count(select(func.count()).select_from(delivery).where(delivery.c.assignment_id == number)),
+        count(select(func.count()).select_from(submission).where(submission.c.assignment_id == number)),
         count(answered),
         count(select(func.count()).select_from(sheets)),
         count(select(func.count()).select_from(marking).where(marking.c.assignment_id == number)),

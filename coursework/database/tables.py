@@ -210,8 +210,8 @@ variant = Table(
 
 #: Assignment of a variant to a student, with sitting and language. ``place`` is its position in
 #: ``issued.json``.
-dealt = Table(
-    "dealt",
+issue = Table(
+    "issue",
     METADATA,
     _key(),
     _of("variant", index=True),
@@ -225,8 +225,8 @@ dealt = Table(
 # ------------------------------------------------------------------------ answers
 
 #: Submission: a file, or the answers that a person submits on the site.
-delivery = Table(
-    "delivery",
+submission = Table(
+    "submission",
     METADATA,
     _key(),
     _of("assignment", index=True),
@@ -236,7 +236,7 @@ delivery = Table(
     Column("number", Integer, nullable=False, default=0),  #: attempt of the person; 0 for files
     Column("receipt", String(40), nullable=False, default=""),  #: code shown to the person
     Column("late", Integer, nullable=False, default=0),  #: seconds after the closing date of the person
-    Column("came", UTCDateTime, nullable=False),
+    Column("received_at", UTCDateTime, nullable=False),
     Column("replaced", UTCDateTime),  #: time at which a later file replaced it; none while it counts
     UniqueConstraint("assignment_id", "digest"),
     UniqueConstraint("assignment_id", "person_id", "number"),
@@ -248,7 +248,7 @@ answer = Table(
     "answer",
     METADATA,
     _key(),
-    _of("delivery", index=True),
+    _of("submission", index=True),
     Column("place", Integer, nullable=False),
     Column("student", SafeText, nullable=False),
     Column("exercise", SafeText, nullable=False),
@@ -268,7 +268,7 @@ drawing = Table(
     "drawing",
     METADATA,
     _key(),
-    _of("delivery", index=True),
+    _of("submission", index=True),
     Column("exercise", SafeText, nullable=False),
     Column("text", SafeText, nullable=False),
 )
@@ -278,7 +278,7 @@ rejected = Table(
     "rejected",
     METADATA,
     _key(),
-    _of("delivery", index=True),
+    _of("submission", index=True),
     Column("place", Integer, nullable=False),
     Column("source", SafeText, nullable=False),
     Column("reason", SafeText, nullable=False),
@@ -290,7 +290,7 @@ seen = Table(
     "seen",
     METADATA,
     _key(),
-    _of("delivery", index=True),
+    _of("submission", index=True),
     Column("place", Integer, nullable=False),
     Column("source", SafeText, nullable=False),
     Column("what", SafeText, nullable=False),
@@ -328,7 +328,7 @@ mark = Table(
     _of("marking", index=True),
     Column("place", Integer, nullable=False),  #: on the sheet
     Column("part", SafeText, nullable=False),
-    Column("came", Integer),  #: position among the answers received; none without an answer
+    Column("received_place", Integer),  #: position among the answers received; none without an answer
     Column("answer", SafeText, nullable=False),
     Column("read_as", SafeText, nullable=False),
     Column("verdict", SafeText, nullable=False),
@@ -369,7 +369,7 @@ placing = Table(
     _key(),
     _of("assignment", index=True),
     Column("row", String(64), nullable=False),
-    _of("delivery", null=True),
+    _of("submission", null=True),
     Column("reason", SafeText, nullable=False, default=""),
     Column("by", SafeText, nullable=False),
     Column("made", UTCDateTime, nullable=False),
@@ -397,9 +397,9 @@ scanned = Table(
     Column("file", SafeText, nullable=False),
     Column("number", Integer, nullable=False),
     Column("student", SafeText, nullable=False, default=""),  #: empty if unknown
-    Column("kept", Json, nullable=False),
+    Column("reading", Json, nullable=False),
     Column("picture", SafeText, nullable=False, default=""),
-    Column("came", UTCDateTime, nullable=False),
+    Column("received_at", UTCDateTime, nullable=False),
     UniqueConstraint("assignment_id", "page"),
 )
 
@@ -516,7 +516,7 @@ job = Table(
     _key(),
     Column("kind", String(16), nullable=False),  #: mark, rescue, prepare
     _of("assignment", index=True),
-    _of("delivery", null=True, index=True),
+    _of("submission", null=True, index=True),
     _of("person", null=True, index=True),
     Column("tries", Integer, nullable=False, default=0),  #: number of attempts
     Column("worker", String(64), nullable=False, default=""),  #: last worker
@@ -588,7 +588,7 @@ lti_launch = Table(
     Column("maximum", Double),
     Column("comment", SafeText, nullable=False, default=""),
     Column("waits", Boolean, nullable=False, default=False),  #: some answers wait for a person
-    Column("stamp", UTCDateTime),  #: of the score, as the platform is told; a later one is larger
+    Column("stamp", UTCDateTime),  #: of the score, as sent to the platform; a later one is larger
     Column("due", UTCDateTime, index=True),  #: time of the next attempt; none once the score has arrived
     Column("failures", Integer, nullable=False, default=0),
     Column("problem", SafeText, nullable=False, default=""),  #: of the last attempt

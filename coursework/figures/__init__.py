@@ -14,8 +14,8 @@ numbers in mm, y up; angles are degrees from +x, counter-clockwise::
     figure.svg(), figure.outlined_svg(), figure.png(ppi=200), figure.pdf()
     figure.scale, figure.size_mm, figure.labels()
 
-The drawing is scaled to the largest size whose frame, labels included, fits ``paper_mm`` (110 by 75 mm unless
-told), with one scale for x and y; a sheet lays it out again for the room it has, ``figure.fitted(112, 62)``.
+The drawing is scaled to the largest size whose frame, labels included, fits ``paper_mm`` (by default 110 by
+75 mm), with one scale for x and y; a sheet lays it out again for the room it has, ``figure.fitted(112, 62)``.
 ``Figure(..., scale=1)`` has that scale instead, and ``figure.beginning(n)`` is its first n elements in the
 same frame. Symbols (pins, hatching, blocks, arrow heads, letters) keep their size on paper. Mechanism points
 are printed to 0.1 mm and directions of symbols to a whole degree: the file says no more than a ruler and a

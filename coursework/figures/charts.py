@@ -23,7 +23,7 @@ _SAMPLE = 9.0  #: length of the line before it, mm
 
 _LETTER = re.compile(r'<path transform="([^"]*)" d="([^"]*)"/>')
 
-#: Series are told apart without colour, by their marks and dashes.
+#: Series differ without colour, by their marks and dashes.
 COLOURS = (LINE, WRONG, RIGHT, "#8a5a00", "#6a3d9a", "#007a87", "#555")
 _DASHES = ("", "2 0.8", "2 0.8 0.5 0.8", "0.5 0.7")
 _MARKS = (

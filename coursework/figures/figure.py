@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from coursework.figures.placing import Label
     from coursework.figures.writing import Lettering, Letters
 
-_PAPER_MM = (110.0, 75.0)  #: what a drawing takes at most unless told
+_PAPER_MM = (110.0, 75.0)  #: largest size of a drawing, by default
 _MARGIN = 1.0  #: white round the drawing, mm
 _DIGITS = 10  #: of the coordinates of what is drawn
 _TRIES = 40
@@ -134,8 +134,8 @@ class _Drawn(Printed):
 class Figure(_Drawn):
     """Elements in mechanism coordinates (complex, mm, y up), drawn to one scale in a paper box.
 
-    ``paper_mm`` is the largest width and height the drawing may take, labels included, 110 by 75 unless
-    told; the aspect is kept, so one of the two is usually not used up. A sheet lays the figure out
+    ``paper_mm`` is the largest width and height the drawing may take, labels included, by default
+    110 by 75; the aspect is kept, so one of the two is usually not used up. A sheet lays the figure out
     again for the room that it has (see :meth:`fitted`). With ``scale``, mm on paper for one of mechanism,
     the drawing has that scale and whatever size comes of it.
 
@@ -146,7 +146,7 @@ class Figure(_Drawn):
     elements: tuple[Element, ...]
     paper_mm: tuple[float, float]
     fixed_scale: float | None
-    bounded: bool  #: whether the author told ``paper_mm``
+    bounded: bool  #: whether the author gave ``paper_mm``
 
     def __init__(
         self, *elements: Element, paper_mm: tuple[float, float] | None = None, scale: float | None = None

@@ -185,7 +185,7 @@ class _Stage(FigurePaper):
 
 
 Frames = Sequence[Sequence[Element]]
-PAPER_MM = (130.0, 95.0)  #: what moves takes at most unless told
+PAPER_MM = (130.0, 95.0)  #: largest size of what moves, by default
 
 
 def drawing(

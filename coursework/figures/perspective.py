@@ -24,7 +24,7 @@ See: TypeAlias = Callable[[Place], complex]  #: where a point is seen; a mm acro
 #: Degrees from which the joints may be seen: about z from x, and above the plane of x and y. The first that
 #: shows them well is taken; in all x comes towards the reader, y goes to the right and z up.
 _VIEWS = [(about, above) for above in (20, 30, 12, 40) for about in (30, 20, 40, 50, 60, -20, -30, -40)]
-_APART = 9.0  #: what is seen so far apart is told apart well, mm on paper
+_APART = 9.0  #: distance from which on two things are clearly distinguished, mm on paper
 _SCALE = 1.0  #: at most
 _WIDE = 110.0  #: what the points may take of the paper across, mm
 _ARM = 6.0  #: of an axis to each side of its point, mm on paper

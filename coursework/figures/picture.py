@@ -23,7 +23,7 @@ _SVG, _XLINK = "http://www.w3.org/2000/svg", "http://www.w3.org/1999/xlink"
 _XHTML = "http://www.w3.org/1999/xhtml"
 _PNG = b"\x89PNG\r\n\x1a\n"
 _MM = {"": 25.4 / 96, "px": 25.4 / 96, "mm": 1.0, "cm": 10.0, "in": 25.4, "pt": 25.4 / 72, "pc": 25.4 / 6}
-_PPI = 150  #: of a PNG whose width is not told
+_PPI = 150  #: of a PNG whose width is not given
 _LENGTH = re.compile(r"\s*([0-9.]+(?:e[+-]?\d+)?)\s*([a-z]*)\s*", re.I)
 _DOCTYPE = re.compile(rb"<!DOCTYPE[^>\[]*>", re.I)
 #: All that draws. What else there is runs, moves, leads elsewhere, or is HTML as soon as it stands in a page.

@@ -103,7 +103,7 @@ class StudentDrawing:
         try:
             stored = json.loads(text)
         except (ValueError, RecursionError):
-            raise BadInput("the drawing is no JSON") from None
+            raise BadInput("the drawing is not JSON") from None
         if not isinstance(stored, dict) or stored.get("v") != 1 or not isinstance(stored.get("items"), list):
             raise BadInput("the drawing has no items, or is of another version")
         if len(stored["items"]) > _MOST_ITEMS:

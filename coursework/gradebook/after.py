@@ -173,7 +173,7 @@ class Exam:
     charged: Mapping[Sitting, float] = field(default_factory=dict)
     measured: Mapping[SheetOfStudent, Measure] | None = None
     presence: Mapping[str, str] = field(default_factory=dict)  #: by student, where somebody stated it
-    shown: Callable[[str], str] = str  #: name or code by which a student is named in what is told
+    shown: Callable[[str], str] = str  #: name or code by which a student is named in messages
 
     # -------------------------------------------------------------------- marks
 
@@ -565,7 +565,7 @@ def steps_on(
 
 
 def as_one(steps: Iterable[Decision]) -> list[Decision]:
-    """Return steps as one batch: one decision, which is told and taken back as a whole."""
+    """Return steps as one batch: one decision, which is printed and taken back as a whole."""
     batch = new_id()
     return [one._replace(id=batch) for one in steps]
 

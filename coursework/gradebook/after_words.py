@@ -15,7 +15,10 @@ from coursework.language.numbers import localise
 from coursework.language.words import words
 
 _LONGEST = 70  #: characters of an error in words
-_TOLD, _NUMBERS = 6, 12  #: changes of one batch, and numbers of questions of one change, that are told
+_MOST_CHANGES, _NUMBERS = (
+    6,
+    12,
+)  #: changes of one batch, and numbers of questions of one change, that are printed
 
 
 def number(value: float, lang: str, digits: int = 4) -> str:
@@ -33,7 +36,7 @@ def batch_texts(exam: Exam, steps: Iterable[Decision], lang: str) -> list[tuple[
 
 
 def batch_text(exam: Exam, made: Sequence[Decision], lang: str) -> str:
-    """Return what the decisions of one batch do: those that do the same to several questions are told
+    """Return what the decisions of one batch do: those that do the same to several questions are described
     together."""
     texts = words(lang)["after"]
     if all(one.student for one in made):
@@ -41,9 +44,9 @@ def batch_text(exam: Exam, made: Sequence[Decision], lang: str) -> str:
     alike: dict[tuple[Any, ...], list[Decision]] = {}
     for one in made:
         alike.setdefault((one.kind, one.points, one.answer), []).append(one)
-    told = [_alike_text(exam, some, lang) for some in alike.values()]
-    text = str(texts["then"]).join(told[:_TOLD])
-    return text if len(told) <= _TOLD else str(texts["several"]).format(text, len(told))
+    parts = [_alike_text(exam, some, lang) for some in alike.values()]
+    text = str(texts["then"]).join(parts[:_MOST_CHANGES])
+    return text if len(parts) <= _MOST_CHANGES else str(texts["several"]).format(text, len(parts))
 
 
 def _alike_text(exam: Exam, steps: Sequence[Decision], lang: str) -> str:
@@ -67,13 +70,13 @@ class _PricedError(NamedTuple):
 def error_text(exam: Exam, exercise: str, verdict: str, lang: str) -> str:
     """Return an error in words: its family, such as a slip, and what was done."""
     family, _, name = verdict.partition(":")
-    told = str(words(lang)["after"]["errors"].get(family, family))
+    text = str(words(lang)["after"]["errors"].get(family, family))
     if not name:
-        return told
+        return text
     asked = [exercise] if exercise else exam.issued.exercises
     kind = "slip" if family == "follow_through" else family
     says = (Names(exam.course, lang).mistake(_PricedError(one, kind, name), _LONGEST) for one in asked)
-    return f"{told}{words(lang)['sheet']['colon']} {next((text for text in says if text != name), name)}"
+    return f"{text}{words(lang)['sheet']['colon']} {next((other for other in says if other != name), name)}"
 
 
 def _place(exam: Exam, steps: Sequence[Decision], lang: str) -> str:

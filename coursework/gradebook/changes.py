@@ -143,11 +143,11 @@ class History:
             student = folded(change["student"])
             marks_columns = {"mark_before": self._marks.get(student, ""), "mark_now": marks.get(student, "")}
             yield {"date": self._day, **change, **marks_columns}
-        told = {folded(change["student"]) for change in self._new}
+        listed = {folded(change["student"]) for change in self._new}
         for row in summary:  # a question or the scale changed, and no answer
             student = folded(str(row.get("student", "")))
             before, now = self._marks.get(student), marks.get(student, "")
-            if self._is_adjusted and student not in told and before not in (None, now):
+            if self._is_adjusted and student not in listed and before not in (None, now):
                 cells = {"date": self._day, "student": row["student"], "mark_before": before, "mark_now": now}
                 yield {**dict.fromkeys(CHANGES_COLUMNS, ""), **cells}
 

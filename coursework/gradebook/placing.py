@@ -160,7 +160,7 @@ def _check_version(record: Mapping[str, Any], version: str) -> None:
     if version and version != str(record["version"]):
         raise UnplacedError(
             (
-                "the answers are to version {version} of {exercise}, and version {issued} was issued: "
+                "the answers belong to version {version} of {exercise}, and version {issued} was issued: "
                 "name the "
                 "issued.json of the export that is on the platform"
             ),
@@ -248,7 +248,7 @@ def placed_rows(
 def _placed_in_order(
     issued: Issued, rows: Iterable[AnswerRow | Rejected | PlatformFile], sheets: Sheets, doubts: Doubts
 ) -> Iterator[PlacedRow]:
-    place_told = _place_cache(issued)
+    cached_place = _place_cache(issued)
     unsaid: set[SheetKey] = set()  #: sheets of several sittings whose answers do not state one
     for row in rows:
         if isinstance(row, PlatformFile):
@@ -260,7 +260,7 @@ def _placed_in_order(
             continue
         if row.warning and row.warning not in sheets.warnings:
             sheets.warnings.append(row.warning)
-        key = place_told(row)
+        key = cached_place(row)
         doubts.note(row, None if isinstance(key, str) else key[:3])
         if isinstance(key, str):
             yield Rejected(row.source, key, as_texts(row))
@@ -293,7 +293,7 @@ def _place_cache(issued: Issued) -> Callable[[AnswerRow], SheetKey | str]:
     passing: dict[tuple[str, str, str, RowOrigin | None], SheetKey | str] = {}
     lasting = passing.copy()
 
-    def place_told(row: AnswerRow) -> SheetKey | str:
+    def cached_place(row: AnswerRow) -> SheetKey | str:
         # Whom a platform names and no roster is who they were when first met; others are found again as they
         # were.
         memory = lasting if row.origin is not None and not issued.has_roster else passing
@@ -308,7 +308,7 @@ def _place_cache(issued: Issued) -> Callable[[AnswerRow], SheetKey | str]:
             memory[named] = key
         return key
 
-    return place_told
+    return cached_place
 
 
 def fill(

@@ -163,8 +163,8 @@ def unsettled(line: SemesterLine, assignments: Sequence[Assessed]) -> dict[str, 
 def status_of(line: SemesterLine, assignments: Sequence[Assessed]) -> str:
     """Return a line's status as ``semester.csv`` has it: ``provisional: final; absent: midterm``; else
     ``final``."""
-    told = [f"{status}: {', '.join(names)}" for status, names in unsettled(line, assignments).items()]
-    return "; ".join(told) or FINAL
+    parts = [f"{status}: {', '.join(names)}" for status, names in unsettled(line, assignments).items()]
+    return "; ".join(parts) or FINAL
 
 
 def columns_of(lines: Iterable[SemesterLine], assignments: Sequence[Assessed]) -> list[str]:

@@ -109,7 +109,7 @@ def _odd_file(path: Path) -> Rejected:
             path_text(path),
             Message("a spreadsheet is not read: download the table as CSV (comma separated values)"),
         )
-    ending = Path(path_text(path)).suffix or "no ending"
+    ending = Path(path_text(path)).suffix or "no file extension"
     return Rejected(
         path_text(path),
         Message("answers come as {endings}; found {found}", endings=", ".join(ENDINGS), found=ending),

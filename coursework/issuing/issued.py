@@ -448,7 +448,7 @@ def _columns(content: Any, source: str) -> dict[str, Mapping[str, str]]:
         return {}
     if not isinstance(content, Mapping) or not all(isinstance(row, Mapping) for row in content.values()):
         raise BadInput(
-            "{source}: the students in it are not columns by name; 'coursework build' writes them",
+            "{source}: the students in it have no columns by name; 'coursework build' writes them",
             source=source,
         )
     return {str(s): {str(c): str(v) for c, v in row.items()} for s, row in content.items()}
@@ -473,7 +473,8 @@ def _codes(content: Mapping[str, Any], source: str) -> Mapping[str, str]:
     codes = content.get(CODES) or {}
     if not isinstance(codes, Mapping) or not all(isinstance(code, str) for code in codes.values()):
         raise BadInput(
-            "{source}: the codes in it are no texts by student; 'coursework build' writes them", source=source
+            "{source}: the codes in it are not texts by student; 'coursework build' writes them",
+            source=source,
         )
     return codes
 

@@ -114,7 +114,7 @@ def read_roster(
             raise BadInput("{location}: no name; write it, or delete the line", location=location)
         if lang and lang not in languages():
             raise BadInput(
-                "{location}: no language {lang!r}; there is {languages}",
+                "{location}: no language {lang!r}; available: {languages}",
                 location=location,
                 lang=lang,
                 languages=", ".join(languages()),

@@ -132,7 +132,7 @@ class Kind(ABC):
     unitless: ClassVar[str] = "wrong_unit_ratio"  #: the sentence for a unit where there is none
     #: Faults of which the piece that stops the reading is quoted.
     quoted: ClassVar[tuple[str, ...]] = ("unknown_unit",)
-    #: Faults that are told as others.
+    #: Faults whose message is that of another.
     faults: ClassVar[Mapping[str, str]] = {"unknown_symbol": "not_a_number"}
     #: By language, the form of an answer, where the engine's words have none.
     hint: ClassVar[Mapping[str, str]] = {}

@@ -90,7 +90,7 @@ class Torsor(Kind):
         return float(np.max(self._gaps(part, value, reference, envelope)))
 
     def size(self, reference: Any) -> float:
-        """Return the largest moment: the margin that is told is that of the second column; of a torsor
+        """Return the largest moment: the margin that is printed is that of the second column; of a torsor
         without moments, the resultant."""
         absolute = np.abs(np.asarray(reference, dtype=float))
         return float(np.max(absolute[self._places(len(absolute))[1]])) or float(np.max(absolute))

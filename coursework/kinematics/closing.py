@@ -145,7 +145,7 @@ def closing(stretched: Any, folded: Any, side: Any, swept: Sweep, direct: Any = 
     swept
         Sweep of the angle, in the unit of the margins.
     direct
-        P where it is known better than by its sum, NaN elsewhere; none unless told.
+        P where it is known better than by its sum, NaN elsewhere; by default none.
 
     Returns
     -------

@@ -290,7 +290,7 @@ class SliderCrank:
                 gap=gap,
             )
         return Undefined(
-            "the rod, {rod:.6g}, stands square to the slider's line: the rates do not exist", rod=rod
+            "the rod, {rod:.6g}, is perpendicular to the slider's line: the rates do not exist", rod=rod
         )
 
 

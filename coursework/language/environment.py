@@ -1,4 +1,4 @@
-"""The language of the environment, as programs are told it."""
+"""The language of the environment, as programs read it."""
 
 from __future__ import annotations
 

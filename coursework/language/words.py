@@ -16,7 +16,7 @@ from coursework.errors import BadCourse, UnknownName, first_few
 from coursework.system.cache import cached_result
 
 _FOLDER = Path(__file__).parent
-_FAULTS = 5  #: of a words file that are told at once
+_FAULTS = 5  #: of a words file that are reported at once
 _PLACE = re.compile(r"\{\{|\}\}|\{[^{}]*\}|[{}]")
 
 
@@ -63,7 +63,7 @@ def file_of(lang: str, of: str = "") -> Path:
 def no_language(lang: str) -> UnknownName:
     """Return the error for a language that the engine does not speak."""
     return UnknownName(
-        "no language {lang!r}; there is {languages}; the words of another would be in {file}",
+        "no language {lang!r}; available: {languages}; the words of another would be in {file}",
         lang=lang,
         languages=", ".join(languages()),
         file=file_of(lang),

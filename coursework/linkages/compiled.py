@@ -60,7 +60,7 @@ from coursework.mechanics import Body, Gear, Load, Mechanism, Slide
 from coursework.marking.drawn_polygons import (
     DrawingParts, if_long, met, off_both, scale_for, to_paper, turned, verdicts,
 )
-from coursework.solution import Moving, given, judge, mistake, stable, told_after
+from coursework.solution import Moving, given, judge, mistake, stable, explained_after
 """
 
 
@@ -421,8 +421,8 @@ class CompiledLinkage:
                     )
                     raise self.linkage.refused(
                         ("known",),
-                        "a known result is a quantity in its unit; found {name} = {text} {unit}; there "
-                        "is {would}",
+                        "a known result is a quantity in its unit; found {name} = {text} {unit}; "
+                        "available: {would}",
                         name=name,
                         text=text,
                         unit=unit,
@@ -691,7 +691,7 @@ def compiled(path: Path, shown: str = "") -> CompiledLinkage:
     path
         The file.
     shown
-        Name of the file in messages; its path unless told.
+        Name of the file in messages; by default its path.
 
     Returns
     -------

@@ -314,7 +314,7 @@ class ExpressionReader:
             self._refuse_product(text)
             raise WrongValue(
                 Message(
-                    "{text} is no expression: names, numbers with units, + - * / ^ and functions",
+                    "{text} is not an expression: names, numbers with units, + - * / ^ and functions",
                     text=repr(text),
                 )
             ) from None

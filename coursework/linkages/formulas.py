@@ -515,7 +515,7 @@ class FormulaWriter(HigherGroupWriter):
         if below.vanishes:
             raise self.linkage.refused(
                 ("slides", other.at),
-                "the slides at {at} and {at_2} are parallel: they hold nothing",
+                "the slides at {at} and {at_2} are parallel: they do not fix the position",
                 at=one.at,
                 at_2=other.at,
             )

@@ -215,7 +215,8 @@ def _dyad(linkage: LinkageFile, bodies: tuple[str, ...], placed: Sequence[str]) 
         if all(isinstance(e, SlideEntry) for e in ends):
             raise linkage.refused(
                 ("slides",),
-                "bodies {p} and {q} are held by three slides: they cannot turn, and are held twice",
+                "bodies {p} and {q} are connected by three slides: they cannot turn, and one slide "
+                "is redundant",
                 p=p,
                 q=q,
             )

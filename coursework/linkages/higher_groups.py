@@ -56,12 +56,12 @@ class HigherGroupWriter(LoopWriter):
         posed = f"{chain}.pose(dict({', '.join(f'{n}={n}' for n in arguments)}))"
         self.hide(solved, posed, words["bodies"], ", ".join(group_joints(group, linkage)))
         for turn, body in turns.items():
-            code, told = f"{solved}.degrees('{turn}')", {**words, "body": body}
-            self.write(turn, code, "deg", "turn_large", words=told, silent=True)
+            code, values = f"{solved}.degrees('{turn}')", {**words, "body": body}
+            self.write(turn, code, "deg", "turn_large", words=values, silent=True)
         for slide in slides:
-            code, told = f"{solved}.values['{slide.distance}']", {**words, "s": slide.distance}
+            code, values = f"{solved}.values['{slide.distance}']", {**words, "s": slide.distance}
             self.write(
-                slide.distance, code, "mm", "slide_large", self.slide_symbol(slide), words=told, silent=True
+                slide.distance, code, "mm", "slide_large", self.slide_symbol(slide), words=values, silent=True
             )
         self._finish(group, words)
         for order, rates, stem in ((1, "_rates", "omega"), (2, "_gains", "alpha")):
@@ -78,22 +78,22 @@ class HigherGroupWriter(LoopWriter):
             )
             power = "" if order == 1 else "^2"
             for turn, body in turns.items():
-                code, told = f"{hidden}['{turn}'][{order - 1}]", {**words, "body": body}
+                code, values = f"{hidden}['{turn}'][{order - 1}]", {**words, "body": body}
                 self.write(
                     turn.replace("theta", stem, 1),
                     code,
                     f"rad/s{power}",
                     f"{stem}_large",
-                    words=told,
+                    words=values,
                     silent=True,
                 )
             for slide in slides:
-                code, told = f"{hidden}['{slide.distance}'][{order - 1}]", {**words, "s": slide.distance}
+                code, values = f"{hidden}['{slide.distance}'][{order - 1}]", {**words, "s": slide.distance}
                 name, symbol = (
                     f"{slide.distance}_{'d' * order}ot",
                     dotted(self.quantities[slide.distance].symbol, order),
                 )
-                self.write(name, code, f"mm/s{power}", f"{stem}_large", symbol, words=told, silent=True)
+                self.write(name, code, f"mm/s{power}", f"{stem}_large", symbol, words=values, silent=True)
 
     def _loops(self, group: HigherGroup) -> tuple[list[Chain], list[str], list[str]]:
         """Return the independent loops of a group, the joint that closes each, and the names of the

@@ -124,7 +124,7 @@ class JointReader(TableReader):
         if not driven:
             raise self.refused(
                 ("bodies",),
-                "nothing drives: one body is turned by a given angle: {example}",
+                "there is no driver: one body must be turned by a given angle: {example}",
                 example='2 = { at = "O", angle = "theta2", … }',
             )
         if len(driven) > 1:

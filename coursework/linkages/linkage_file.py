@@ -78,7 +78,7 @@ def read_linkage(path: Path, shown: str = "") -> LinkageFile:
     path
         The file.
     shown
-        Its name in messages; its path unless told.
+        Its name in messages; by default its path.
 
     Returns
     -------

@@ -68,7 +68,7 @@ class Quantity:
         """The function as Python code."""
         lines = []
         if self.step.endswith("_y"):
-            lines.append(f'@told_after("{self._first_component}")')
+            lines.append(f'@explained_after("{self._first_component}")')
         named = f"meeting({self.meeting})" if self.meeting else ""
         if self.stable:
             function = f"lambda {', '.join(names_in(self.stable))}: {self.stable}"
@@ -163,7 +163,7 @@ class PointWriter:
         for name in linkage.given:
             if keyword.iskeyword(name) or name in FUNCTIONS or name in _OTHERS:
                 raise linkage.refused(
-                    ("given", name), "{name} means something else; call the quantity otherwise", name=name
+                    ("given", name), "{name} means something else; give the quantity another name", name=name
                 )
         self.groups, self.rank = groups_of(linkage)
         self.quantities: dict[str, Quantity] = {}
@@ -248,7 +248,7 @@ class PointWriter:
         if name in self.linkage.given:
             raise self.linkage.refused(
                 ("given", name),
-                "{name} follows from the mechanism; call the given quantity otherwise",
+                "{name} follows from the mechanism; give the given quantity another name",
                 name=name,
             )
         words = {k: str(v) for k, v in more.pop("words", {}).items()}
@@ -432,14 +432,14 @@ class PointWriter:
         self, track: SlideLine, point: str, distance: str, rates: tuple[str, str], words: Mapping[str, str]
     ) -> None:
         """Write the place of a point that slides on a placed body, its velocity and its acceleration."""
-        told, sign = {**words, "B": point}, "-" if track.sign < 0 else ""
+        values, sign = {**words, "B": point}, "-" if track.sign < 0 else ""
         self.hide(f"_{point}", f"{track.base.complex} + {sign}polar({distance}, {track.heading.code})")
-        self.write_end(point, track.moved(track.base, distance), told, f"_{point}")
+        self.write_end(point, track.moved(track.base, distance), values, f"_{point}")
         there = track.moved(self.carried(track.placed, self.at(point), "v"), rates[0])
-        self.write_rates(point, there, "v", "slides", told)
+        self.write_rates(point, there, "v", "slides", values)
         there = track.moved(self.carried(track.placed, self.at(point), "a"), rates[1])
         across = track.across(self.coriolis(track, rates[0]))
-        self.write_rates(point, there + across, "a", "slides", told)
+        self.write_rates(point, there + across, "a", "slides", values)
 
     def _finish_rod(self, body: str, start: str) -> None:
         self.reference[body] = start

@@ -123,7 +123,7 @@ class TableReader(TomlReader):
                 continue
             at = ("given", name)
             if not NAME.match(name):
-                raise self.refused(at, "{name!r} is no name of a quantity: letters, digits, _", name=name)
+                raise self.refused(at, "{name!r} cannot name a quantity: letters, digits, _", name=name)
             results[name] = self._entry(at, name, value)
             self.units[name] = results[name].unit
         return results

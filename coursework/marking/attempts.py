@@ -21,7 +21,7 @@ from coursework.parsing.reading import Reading
 #: Factor between the size of an attempt and that of the reference, unless a known error explains it.
 FARTHEST = 100.0
 THINGS = 2  #: different things that a measured number is written for, before it means nothing
-FEW = 4  #: answers at least of which something can be told
+FEW = 4  #: least number of answers for a statement about them
 DIFFERENT = 3  #: things at least that a copied number is written for
 MOST = 0.75  #: of the answers
 GUESSED = 3  #: counts and cases at least that are wrong, and more than are right, where they are guessed

@@ -18,7 +18,7 @@ _SHARE = 0.01  #: of an angle in radians, that rounding on the way may move it
 def is_in_radians(key: Key, wrong: Iterable[tuple[Part, Reading]]) -> bool:
     """Return whether a calculator set to radians explains several wrong answers of a sheet.
 
-    Angles alone may be right ones told in radians: some answer must show a sine or a cosine.
+    Angles alone may be right values in radians: some answer must show a sine or a cosine.
     """
     numbers = [(p, r) for p, r in wrong if p.sort.is_number and r.status == "read"]
     if len(numbers) < SEVERAL:
@@ -31,11 +31,11 @@ def is_in_radians(key: Key, wrong: Iterable[tuple[Part, Reading]]) -> bool:
     }
     angles = {p.quantity for p, _ in numbers if p.unit == "deg"}
     return len(explained) >= SEVERAL and any(
-        q not in angles or not _is_told_in_radians(key, q, value) for q, value in explained.items()
+        q not in angles or not _is_in_radians(key, q, value) for q, value in explained.items()
     )
 
 
-def _is_told_in_radians(key: Key, quantity: str, value: float) -> bool:
+def _is_in_radians(key: Key, quantity: str, value: float) -> bool:
     right = math.radians(key.reference[quantity])
     return abs(value - right) <= _SHARE * abs(right)
 

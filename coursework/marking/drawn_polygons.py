@@ -23,7 +23,7 @@ Answers: TypeAlias = Mapping[str, Any]  #: by part id, those that were read
 _BOX_MM = (130.0, 80.0)  #: in which the reference drawing fits
 
 
-_LEAST_SIDE_MM = 6.0  #: of a vector whose mistakes are told apart: a point is right within a millimetre
+_LEAST_SIDE_MM = 6.0  #: of a vector whose mistakes are distinguished: a point is right within a millimetre
 _NOTHING_MM = 1e-9 * max(_BOX_MM)  #: what rounding leaves of a coordinate that is zero
 
 

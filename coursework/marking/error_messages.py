@@ -19,7 +19,7 @@ from coursework.model import Part
 from coursework.parsing.reading import Reading
 from coursework.quantities.usual_errors import ALL_DEGREES
 
-_FAR = 5  #: times a right value from which on the order of magnitude is told
+_FAR = 5  #: times a right value from which on the message names the order of magnitude
 _TRIED = 3  #: wrong answers, of which fewer are tried for those that an answer follows from
 _LISTED = 7  #: given quantities that a sentence lists
 
@@ -45,7 +45,7 @@ def mark_wrong(
     explanations = explained(key, part, reading, judged_by, before)
     matches = tuple(dict.fromkeys(e.verdict for e in explanations))
     named = _named(explanations, before)
-    # What is told is told of the reading that it explains, else of the text as it stands.
+    # The message is about the reading that it explains, else about the text as it stands.
     index = named[0].reading if named else 0
     read_as, read = shown_as(variant, part, reading, index)
     mark_of = partial(made_mark, variant, part, reading)
@@ -70,7 +70,7 @@ def mark_wrong(
     else:
         mark = mark_of("wrong", 0.0, read_as, _unexplained_message(variant, part, read, before), matches)
         more += _size_remarks(variant, part, value, reference)
-    return reduce(lambda told, sentence: told.saying(*sentence.texts(variant.lang)), more, mark)
+    return reduce(lambda marked, sentence: marked.saying(*sentence.texts(variant.lang)), more, mark)
 
 
 def _remarks(
@@ -140,11 +140,11 @@ def _explained_message(
             return message_of("follow_through")
         return message_of("follow_through_from", earlier=questions(variant, earlier, "and"))
     if kind == "mistake":
-        hints = dict.fromkeys(variant.told(e.verdict.partition(":")[2]) for e in named)
+        hints = dict.fromkeys(variant.mistake_text(e.verdict.partition(":")[2]) for e in named)
         if len(hints) > 1:
             joint = words(variant.lang)["marking"]["one_of_these"]
             return message_of("mistake", says=f"{joint} {' — '.join(hints)}")
-        return message_of("mistake", says=variant.told(name))
+        return message_of("mistake", says=variant.mistake_text(name))
     errors = [e.error for e in named if e.error is not None]
     if errors:
         why, is_one = whys(variant, errors, judged_by.quantity)

@@ -1,6 +1,6 @@
 """Feedback for the student on an answer: sentences of the engine, in the sheet's language.
 
-The reference value is never told.
+Feedback never contains the reference value.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from coursework.course.variant import Variant
 
 
-ECHO = 160  #: characters of what was read, told back: a graph of ten joints, a loop equation
+ECHO = 160  #: characters of what was read, in the feedback: a graph of ten joints, a loop equation
 QUOTED = 40  #: characters of one that could not be read
 
 

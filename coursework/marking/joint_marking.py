@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from coursework.course.variant import Variant
 
 
-def is_told_with(earlier: Part, part: Part, together: Mapping[str, Verdict]) -> bool:
+def shares_remark(earlier: Part, part: Part, together: Mapping[str, Verdict]) -> bool:
     """Return whether the message for a judged part already stands with an earlier part of its group."""
     same_group = part.judge and earlier.judge == part.judge and earlier.id in together
     return bool(same_group) and together[earlier.id][1:] == together[part.id][1:]
@@ -33,11 +33,11 @@ def mark_judged(
     part: Part,
     reading: Reading,
     judgement: Verdict,
-    told_with: Part | None,
+    remark_at: Part | None,
     missed: Callable[[], str],
     before: EarlierAnswers,
 ) -> Mark:
-    """Return the mark of a part that is judged together with others; ``told_with`` bears the same remark
+    """Return the mark of a part that is judged together with others; ``remark_at`` bears the same remark
     already."""
     read_as, verdict = reading.read_as[judgement.reading], judgement.said
     mark_of = partial(made_mark, variant, part, reading)
@@ -46,10 +46,10 @@ def mark_judged(
         return mark_of("wrong", 0.0, read_as, say(variant, part, "incomplete", read=read, missing=missed()))
     share = min(1.0, max(0.0, float(verdict.share)))
 
-    def told(sentence: str, **pieces: str) -> Sentence:
+    def sentence_of(sentence: str, **pieces: str) -> Sentence:
         """Return a sentence, then what follows from the student's own answers."""
         message = say(variant, part, sentence, read=echo(read_as, variant.lang), **pieces)
-        amounts = {} if told_with else verdict.found
+        amounts = {} if remark_at else verdict.found
         amount_words = {f"found{n}": amount(variant, q, v) for n, (q, v) in enumerate(amounts.items())}
         if not amount_words:
             return message
@@ -62,7 +62,7 @@ def mark_judged(
         sentence = f"slip_{verdict.slip}"
         if verdict.slip == "not_drawn" and (is_scale(part) or verdict.follows):
             sentence = "scale_alone" if is_scale(part) else "drawn_so"
-        return mark_of(slip, key.rules.share(verdict.slip), read_as, told(sentence), (slip,))
+        return mark_of(slip, key.rules.share(verdict.slip), read_as, sentence_of(sentence), (slip,))
     is_followed = judgement.followed or verdict.follows
     if (
         share == 1.0
@@ -70,10 +70,10 @@ def mark_judged(
         and part.sort.is_scalar
         and not _has_work(part, key, reading.values[judgement.reading], before)
     ):
-        return mark_of("wrong", 0.0, read_as, told(_unexplained(variant, part)))
+        return mark_of("wrong", 0.0, read_as, sentence_of(_unexplained(variant, part)))
     if share == 1.0:
         kind, share = ("follow_through", key.rules.follow_through) if is_followed else ("correct", 1.0)
-        return mark_of(kind, share, read_as, told(kind))
+        return mark_of(kind, share, read_as, sentence_of(kind))
     mistakes = [verdict.mistake, *verdict.also] if verdict.mistake else mistakes_that_fit(key, part, reading)
     matches = tuple(f"mistake:{name}" for name in mistakes) + (
         (f"slip:{judgement.slip}",) if judgement.slip else ()
@@ -81,10 +81,10 @@ def mark_judged(
     if mistakes:
         share = share if verdict.mistake and share else key.price(mistakes[0])
 
-        if told_with and verdict.mistake:
-            message = told("told_with", first=questions(variant, [told_with.id], "and"))
+        if remark_at and verdict.mistake:
+            message = sentence_of("remark_at", first=questions(variant, [remark_at.id], "and"))
         else:
-            message = told("mistake", says=variant.told(mistakes[0]))
+            message = sentence_of("mistake", says=variant.mistake_text(mistakes[0]))
         return mark_of(matches[0], share, read_as, message, matches)
     if judgement.slip:
         error = judgement.trace or "/".join(judgement.about and (judgement.slip, *judgement.about))
@@ -93,17 +93,17 @@ def mark_judged(
                 "follow_through",
                 judgement.left * key.rules.follow_through,
                 read_as,
-                told("same_error", first=questions(variant, [before.paid[error]], "and")),
+                sentence_of("same_error", first=questions(variant, [before.paid[error]], "and")),
                 matches,
             )
         if error:
             before.paid[error] = part.id
         about = either_symbol(variant, judgement.about, both=judgement.slip == "frame_missing")
-        message = told(f"slip_{judgement.slip}", about=about)
+        message = sentence_of(f"slip_{judgement.slip}", about=about)
         return mark_of(
             matches[0], judgement.left * key.rules.share(judgement.slip), read_as, message, matches
         )
-    return mark_of("wrong", share, read_as, told(_unexplained(variant, part)))
+    return mark_of("wrong", share, read_as, sentence_of(_unexplained(variant, part)))
 
 
 def _unexplained(variant: Variant, part: Part) -> str:

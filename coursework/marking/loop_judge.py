@@ -174,7 +174,7 @@ class LoopJudge:
             return self._found(equation)
 
     def _found(self, equation: Equation) -> Finding:
-        usual, as_told = (self._near, self._steps), self._in_degrees
+        usual, in_degrees = (self._near, self._steps), self._in_degrees
         best = self._as_it_stands(equation, *usual)
         if best.rank:
             return Finding(0, fault="wrapped") if self._is_wrapped(equation) else best
@@ -182,7 +182,7 @@ class LoopJudge:
             return best
         # Symbols of angles may stand for numbers of degrees, as the data print them.
         read = equation.in_degrees()
-        for other, places in ((equation, as_told), (read, usual)):
+        for other, places in ((equation, in_degrees), (read, usual)):
             if other is not None and (finding := self._as_it_stands(other, *places)).rank:
                 return finding
         missed = self._missed(equation)

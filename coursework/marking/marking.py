@@ -28,7 +28,7 @@ from coursework.marking.doubtful import settled
 from coursework.marking.error_messages import mark_wrong, shown_as
 from coursework.marking.exchanged import Exchange, exchanged
 from coursework.marking.feedback import Sentence, echo, part_name, questions, say, say_not_read
-from coursework.marking.joint_marking import is_told_with, mark_judged, waits_for
+from coursework.marking.joint_marking import mark_judged, shares_remark, waits_for
 from coursework.marking.judges import Verdict, best_judged, is_scale, judged, judged_again, judges_of
 from coursework.marking.loop_judge import loop_verdicts
 from coursework.marking.mark import Mark, SheetMarks, made_mark
@@ -116,7 +116,7 @@ def mark(variant: Variant, answers: Mapping[str, Any], known: Mapping[str, str] 
         if i in together:
             nearest = together[i].reading, math.inf
             tellers = (p for j, p in parts.items() if j in marks and j not in no_scale)
-            teller = next((p for p in tellers if is_told_with(p, part, together)), None)
+            teller = next((p for p in tellers if shares_remark(p, part, together)), None)
             missed = partial(waits_for, variant, part, readings, waiting)
             marks[i] = mark_judged(variant, key, part, reading, together[i], teller, missed, before)
             if is_scale(part) and reading.values[nearest[0]] <= 0:
@@ -225,7 +225,7 @@ def _mark_exchanged(
     variant: Variant, key: Key, part: Part, exchange: Exchange, named: str, marks: Mapping[str, Mark]
 ) -> Mark:
     """Return the mark of an answer that stands in the box of another: the exchange is paid for where it is
-    first met, and there told in the words of the mistake that is ``named``, if any."""
+    first met, and there described in the words of the mistake that is ``named``, if any."""
     other, reading = exchange.part, exchange.reading
     read_as, read = shown_as(variant, other, reading, exchange.place)
     mark_of = partial(made_mark, variant, part, reading)
@@ -241,7 +241,9 @@ def _mark_exchanged(
     share = key.rules.share("exchanged")
     mark = mark_of("slip:exchanged", share, read_as, say(variant, part, "slip_exchanged", **pieces), matches)
     return (
-        mark.saying(*Sentence("{says}", {"says": variant.told(named)}).texts(variant.lang)) if named else mark
+        mark.saying(*Sentence("{says}", {"says": variant.mistake_text(named)}).texts(variant.lang))
+        if named
+        else mark
     )
 
 

@@ -1,4 +1,4 @@
-"""The usual errors that give an answer: which, and how they are told."""
+"""The usual errors that give an answer: which, and their messages."""
 
 from __future__ import annotations
 
@@ -179,11 +179,11 @@ def _contradicts(key: Key, error: UsualError, quantity: str) -> bool:
     return part.sort.apart(part, value, key.reference[quantity], None, width) > 1
 
 
-# ---------------------------------------------------------------------------- told
+# ------------------------------------------------------------------------ messages
 
 
 def why(variant: Variant, error: UsualError, quantity: str) -> str:
-    """Return how an error is told, Markdown: ``the term $r_2^2$ is left out``.
+    """Return the text of an error, Markdown: ``the term $r_2^2$ is left out``.
 
     Symbols that stand on no sheet of the exercise are not printed, and of a formula never the whole.
     """

@@ -130,8 +130,8 @@ def typst_formula(tex: str, lang: str, *, display: bool = False, number: str = "
 
     call = "display-formula" if display else "formula"
     full = ", whole: true" if not display and len(to_line(tex, lang)) <= _WHOLE else ""
-    told = f", number: {typst_string(number)}" if number else ""
-    return f"#{call}({typst_string(spoken(tex, lang))}, ${to_typst(tex, lang)}${full}{told});"
+    numbered = f", number: {typst_string(number)}" if number else ""
+    return f"#{call}({typst_string(spoken(tex, lang))}, ${to_typst(tex, lang)}${full}{numbered});"
 
 
 #: A text that is one formula, as most answers are, is read at a glance.

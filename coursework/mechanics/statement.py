@@ -36,9 +36,9 @@ class Body:
     points
         Its other points, by name.
     mass, inertia
-        kg, and kg m^2 about the centre of mass; none unless told.
+        kg, and kg m^2 about the centre of mass; by default none.
     centre
-        The point that is its centre of mass; the origin of its frame unless told.
+        The point that is its centre of mass; by default the origin of its frame.
     origin
         For a body that slides alone hold, such as a Scotch yoke: where the origin of its frame lies in the
         ground's, mm, a place that moves with the driver. ``at`` is then its own name of that point, which no

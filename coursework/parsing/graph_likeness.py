@@ -95,7 +95,7 @@ def compare(answer: Graph, reference: Graph) -> Compared:
             pairs.setdefault(joint.bodies, []).append(joint.kind)
     pivots = [_Pivot(joint) for joint in reference if joint.pairs > 1]
     rest = _record_of_all(answer, pivots, bodies, result)
-    rest = [joint for joint in rest if not _is_told_right(joint, pairs, pivots, result)]
+    rest = [joint for joint in rest if not _is_right(joint, pairs, pivots, result)]
     for joint in rest:
         _record_fault(joint, pairs, pivots, reference, result)
     return result
@@ -124,7 +124,7 @@ def _count(joint: Edge, kind: str, result: Compared) -> None:
         (result.kind if joint.kind else result.no_kind).append(joint)
 
 
-def _is_told_right(
+def _is_right(
     joint: Edge, pairs: Mapping[tuple[str, ...], list[str]], pivots: Sequence[_Pivot], result: Compared
 ) -> bool:
     wanted = pairs.get(joint.bodies, [])

@@ -254,7 +254,7 @@ def _unit_of(expression: Expression, in_degrees: Expression | None) -> str:
     degrees, radians = in_degrees.evaluate(), expression.evaluate()
     if math.isclose(degrees, math.degrees(radians), rel_tol=1e-9, abs_tol=1e-9):
         return "deg"
-    angles = [abs(number) for number in _told_of_angles(root)]
+    angles = [abs(number) for number in _angles_in(root)]
     if abs(radians) > _FEW_TURNS or any(number > _FEW_TURNS for number in angles):
         return "deg"
     if _are_parts_of_pi(angles):
@@ -262,7 +262,7 @@ def _unit_of(expression: Expression, in_degrees: Expression | None) -> str:
     raise Stop("two_values", expression.text)
 
 
-def _told_of_angles(node: Operation) -> Iterator[float]:
+def _angles_in(node: Operation) -> Iterator[float]:
     """Yield the numbers of a formula that are angles: added to an inverse function, or the argument of a
     sine."""
     if node.kind == "sum" and node.has_inverse:
@@ -270,7 +270,7 @@ def _told_of_angles(node: Operation) -> Iterator[float]:
     if node.kind == "call" and node.name in ("sin", "cos", "tan") and not node.has_inverse:
         yield _value_of(node.args[0])
     for arg in node.args:
-        yield from _told_of_angles(arg)
+        yield from _angles_in(arg)
 
 
 def _value_of(node: Operation) -> float:

@@ -41,7 +41,7 @@ def feature_words(feature: str, lang: str) -> str:
     features = words(lang)["platforms"]["features"]
     if feature not in features:
         raise BadCourse(
-            "no words for the feature {feature!r}; there is: {names}",
+            "no words for the feature {feature!r}; available: {names}",
             feature=feature,
             names=", ".join(features),
         )
@@ -66,7 +66,7 @@ def platform_words(section: str, platform: str, lang: str) -> Any:
     if platform not in table:
         raise BadCourse(
             "the platform {platform!r} has no words: language/{lang}.toml lacks "
-            "platforms.{section}.{platform}; there is: {names}",
+            "platforms.{section}.{platform}; available: {names}",
             platform=platform,
             lang=lang,
             section=section,

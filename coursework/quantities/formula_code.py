@@ -273,7 +273,7 @@ def _of_template(template: str) -> Formula:
         raise NotEvaluable(str(fault)) from fault
     result = _Coding(names).of(tree)
     if not isinstance(result, _Code):
-        raise NotEvaluable("it is no expression of quantities")
+        raise NotEvaluable("it is not an expression of quantities")
     return Formula(result.tree, names, _SPACE)
 
 

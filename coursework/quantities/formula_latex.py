@@ -3,7 +3,7 @@
 A function whose body is one expression is printed from its own source, so that the formula on
 paper is the one that computed the answer. Guards that raise are passed over, and a private helper that is one
 expression itself stands in its place. A function that does more says its formula by
-:func:`coursework.solution.formula`, or is told in words alone.
+:func:`coursework.solution.formula`, or is explained in words alone.
 """
 
 from __future__ import annotations

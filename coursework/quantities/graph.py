@@ -84,9 +84,9 @@ class QuantityNode:
         return tuple(re.findall(r"<(\w+)>", getattr(self.function, "__formula__", "")))
 
     @property
-    def told_after(self) -> tuple[str, ...]:
+    def explained_after(self) -> tuple[str, ...]:
         """Names that a worked solution prints before it in addition."""
-        return getattr(self.function, "__told_after__", ())
+        return getattr(self.function, "__explained_after__", ())
 
     @property
     def needs(self) -> frozenset[str]:
@@ -174,7 +174,7 @@ def _missing(results: Mapping[str, str]) -> MissingQuantity:
         listed = Message("{first} and {second}", first=", ".join(names[:-1]), second=names[-1])
     needing = set(results.values())
     subject = needing.pop() if len(needing) == 1 else Message("the request")
-    told = {
+    message = {
         (True, True): Message(
             "{subject} needs {listed}, which are not given", subject=subject, listed=listed
         ),
@@ -184,7 +184,7 @@ def _missing(results: Mapping[str, str]) -> MissingQuantity:
         (False, True): Message("{listed} are not given", listed=listed),
         (False, False): Message("{listed} is not given", listed=listed),
     }
-    return MissingQuantity(told[bool(subject), len(names) > 1], names)
+    return MissingQuantity(message[bool(subject), len(names) > 1], names)
 
 
 def _met(nodes: Mapping[str, QuantityNode], names: Iterable[str]) -> frozenset[str]:
@@ -253,7 +253,7 @@ class Graph:
         graph = Graph.__new__(Graph)
         nodes = dict(self.textbook._nodes)
         for name, node in nodes.items():
-            for before in (*node.printed, *node.told_after):
+            for before in (*node.printed, *node.explained_after):
                 if before in nodes and name not in _met(nodes, (before,)):
                     nodes[name] = replace(nodes[name], arguments=(*nodes[name].arguments, before))
         graph._build(nodes, self._shadowed, self._effects)

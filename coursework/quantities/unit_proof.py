@@ -50,8 +50,8 @@ def prove(
     """Check that each quantity's functions give its unit in ``units``, from given values in their own units.
 
     A quantity is proved by its formula and, where it has one, by its stable way; what is given and could be
-    computed is proved as well. What is wrong is followed on in the declared unit, so that one fault is told
-    once.
+    computed is proved as well. What is wrong is followed on in the declared unit, so that one fault is
+    reported once.
     """
     walk = _Walk(graph, given, units, effects)
     with np.errstate(all="ignore"):

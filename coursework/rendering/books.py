@@ -320,7 +320,7 @@ def _paper_file(chapter: BookChapter) -> str:
 
 def _paper_heading(book: Book, chapter: BookChapter) -> PaperHeading:
     book_words = words(book.lang)["book"]
-    told = book_words["paper_told"].format(chapter.paper_minutes)
+    told = book_words["paper_time"].format(chapter.paper_minutes)
     return PaperHeading(
         book.lang, book_words["paper"].format(chapter.number), book.title, student="", duration=told
     )

@@ -1,6 +1,6 @@
 """Combination of scanned pages and typed texts into answers: settled, waiting for a person, or missing.
 
-A pure function of what it is told: the order in which pages came makes no difference.
+A pure function of its arguments: the order of the pages makes no difference.
 """
 
 from __future__ import annotations

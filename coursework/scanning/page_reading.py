@@ -43,7 +43,7 @@ _LAID_OUT = 400  #: papers that are kept laid out
 
 OTHER_SHEET = Message("a sheet of something else that was issued")
 
-#: By what :func:`coursework.scanning.pages.read_page` finds: what the page is, and what is told of it.
+#: By what :func:`coursework.scanning.pages.read_page` finds: what the page is, and the message about it.
 _FOUND = {
     "no code": (LOST, Message("no code of a page was found, or it cannot be read")),
     "no sheet": (REFUSED, Message("its code is not that of a sheet")),

@@ -88,20 +88,20 @@ def _of_ours(
     paper, page_number, _ = _CODE.fullmatch(code.text).groups()  # type: ignore[union-attr]
     pages = {page.number: page for page in papers.get(paper, ())}
 
-    def told(reason: str, page: AnswerPage | None = None) -> PageRead:
+    def page_read(reason: str, page: AnswerPage | None = None) -> PageRead:
         return PageRead(picture.file, picture.page, reason, picture.grey, code.text, page)
 
     if not pages:
-        return told("other assignment")
+        return page_read("other assignment")
     if int(page_number) == 0:
-        return told("statement")
+        return page_read("statement")
     page = pages.get(int(page_number))
     if page is None or page.code_text != code.text:
-        return told("other assignment")
+        return page_read("other assignment")
     try:
         flat = straightened(without_streaks(picture.grey), code, page)
     except NotStraight:
-        return told("not straight", page)
+        return page_read("not straight", page)
     if is_two_toned(picture.grey):
         least = 1 - (1 - least) / _SURER
     fields = tuple(read_field(flat, field, reader, least) for field in page.fields)

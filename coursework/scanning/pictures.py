@@ -65,7 +65,7 @@ def opencv() -> Any:
         It is not installed.
     """
     os.environ.setdefault("OPENCV_IO_MAX_IMAGE_PIXELS", str(LARGEST))
-    os.environ.setdefault("OPENCV_LOG_LEVEL", "OFF")  # what is wrong with a file is told once, by us
+    os.environ.setdefault("OPENCV_LOG_LEVEL", "OFF")  # we report once what is wrong with a file
     return library("cv2", *_NEEDS)
 
 
@@ -80,7 +80,7 @@ def pictures(path: Path) -> Iterator[PageImage]:
     suffix = path.suffix.lower()
     if suffix not in SUFFIXES:
         raise BadPicture(
-            "{file} is no scan that can be read: {endings}", file=path.name, endings=", ".join(SUFFIXES)
+            "{file} is not a scan that can be read: {endings}", file=path.name, endings=", ".join(SUFFIXES)
         )
     yield from _of_pdf(path) if suffix == ".pdf" else _of_image(path)
 
@@ -91,7 +91,7 @@ def _of_pdf(path: Path) -> Iterator[PageImage]:
         document = pdfium.PdfDocument(path)
     except pdfium.PdfiumError as fault:
         raise BadPicture(
-            "{file} is no PDF that can be read: {problem}", file=path.name, problem=fault
+            "{file} is not a PDF that can be read: {problem}", file=path.name, problem=fault
         ) from fault
     with document:
         for number in range(len(document)):
@@ -169,7 +169,7 @@ def _pages_of_image(cv2: Any, path: Path) -> int:
         count = 0
     if not count:
         raise BadPicture(
-            "{file} is no picture that can be read, or is larger than {most} pixels",
+            "{file} is not a picture that can be read, or is larger than {most} pixels",
             file=path.name,
             most=f"{LARGEST:,}",
         )
@@ -282,7 +282,7 @@ def _opened(path: Path) -> Any:
         return pdfium.PdfDocument(path)
     except pdfium.PdfiumError as fault:
         raise BadPicture(
-            "{file} is no PDF that can be read: {problem}", file=path.name, problem=fault
+            "{file} is not a PDF that can be read: {problem}", file=path.name, problem=fault
         ) from fault
 
 

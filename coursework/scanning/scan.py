@@ -68,7 +68,7 @@ from coursework.system.tables import SPREADSHEETS, Spreadsheet
 from coursework.system.writing import Progress, TableFile, Tables, write_whole, writing
 
 TYPED = "typed.csv"
-LEAST = CONFIDENT  #: the confidence below which nothing is guessed, unless told
+LEAST = CONFIDENT  #: by default, the confidence below which nothing is guessed
 ANSWER_COLUMNS = (*COLUMNS, "source")
 PAGE_COLUMNS = (
     "file",
@@ -286,7 +286,7 @@ def write_read(
 ) -> ScanBook:
     """Write what pages say together: answers, the queue, what was rejected, what is missing, and the list of
     pages."""
-    pages = [as_told(scanned_page, papers, typed, least) for scanned_page in pages]
+    pages = [as_typed(scanned_page, papers, typed, least) for scanned_page in pages]
     printed = papers_asked(papers, pages)
     combined = together(papers, printed, pages, typed)
     book = ScanBook(
@@ -306,7 +306,7 @@ def write_read(
     return book
 
 
-def as_told(scanned_page: Scanned, papers: Papers, typed: Sequence[Typed], least: float) -> Scanned:
+def as_typed(scanned_page: Scanned, papers: Papers, typed: Sequence[Typed], least: float) -> Scanned:
     """Return a page in its current state: refused if it is of another issue, or replaced by a person's
     statement."""
     page = scanned_page.page

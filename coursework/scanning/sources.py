@@ -107,7 +107,7 @@ def _file(path: Path, name: str, unpacked: Path, folder: Path | None = None) -> 
             Message(
                 "scans are {endings} or .zip files; found {found}",
                 endings=", ".join(ENDINGS),
-                found=ending or Message("no ending"),
+                found=ending or Message("no file extension"),
             ),
         )
     else:

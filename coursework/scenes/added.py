@@ -39,7 +39,7 @@ class Flywheel:
     def __post_init__(self) -> None:
         if self.unevenness is not None and not 0 < self.unevenness < 1:
             raise WrongValue(
-                "an unevenness lies between 0 and 1, 0.02 for 2 %; found {unevenness:g}",
+                "a coefficient of fluctuation lies between 0 and 1, 0.02 for 2 %; found {unevenness:g}",
                 unevenness=self.unevenness,
             )
         if self.inertia is not None and not 0 < self.inertia < 1e12:

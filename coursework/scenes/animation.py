@@ -47,7 +47,7 @@ _FINER = 8  #: steps of a path for one of the instants
 _LONGEST = 0.3  #: of the longest vector, over the size of the mechanism
 
 
-def told_by_motion(variant: Variant) -> tuple[str, ...]:
+def shown_by_motion(variant: Variant) -> tuple[str, ...]:
     """Return the ids of the parts whose answer one sees at a glance when the mechanism moves.
 
     Those are choices that hold for the whole cycle, such as whether a guide rotates; where a film of the
@@ -74,7 +74,7 @@ class Animation(Reel):
         Of an exercise that names a driver and a figure, or whose solution states a film.
     effects
         What is seen from the start: ``position`` (paths of points), ``velocity``, ``acceleration``,
-        ``coriolis``; paths alone unless told.
+        ``coriolis``; by default paths alone.
     count
         Angles in a turn of the driver.
 

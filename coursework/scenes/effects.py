@@ -28,7 +28,7 @@ REFUSED = ("impact", "impacts", "clearance", "clearances", "play", "backlash")
 def refusal(name: str) -> Message:
     """Return the message for an effect that is never simulated."""
     return Message(
-        "{name}: impacts and clearances are not simulated; joints hold without play, and nothing strikes",
+        "{name}: impacts and clearances are not simulated; joints have no play, and nothing strikes",
         name=name,
     )
 

@@ -213,7 +213,7 @@ class _SceneReader(TomlReader):
         return tuple(result)
 
     def _amount(self, at: Path_, unit: str, otherwise: Any = None) -> Any:
-        """Return a number that stands with its unit, in the unit that is told."""
+        """Return a number that stands with its unit, in the given unit."""
         result = self._at(at)
         return otherwise if result is None else self._number(at, result, unit)
 
@@ -291,7 +291,9 @@ class _SceneReader(TomlReader):
         for key in ("over", "steps"):
             if key in self.table:
                 raise self.refused(
-                    (key,), "{key} is of a cycle; with a drive the motion is in time: leave one out", key=key
+                    (key,),
+                    "{key} applies to a cycle, and with a drive the motion runs in time: leave one out",
+                    key=key,
                 )
         self._only(self._table(("drive",)), ("torque", "no_load_speed"), ("drive",))
         torque = self._amount(("drive", "torque"), "N*m")
@@ -399,7 +401,8 @@ class _SceneReader(TomlReader):
                 raise self.refused((*at, key), "a load has {key} or {other}, not both", key=key, other=other)
         if "by" in values and "table" not in values:
             raise self.refused(
-                (*at, "by"), "by is what a table goes by; the load has none: table = [[…, …], […, …]]"
+                (*at, "by"),
+                "by names the variable of a table, and the load has no table: table = [[…, …], […, …]]",
             )
 
     @staticmethod
@@ -454,7 +457,8 @@ class _SceneReader(TomlReader):
         ]
         if any(b[0] <= a[0] for a, b in pairwise(results)):
             raise self.refused(
-                (*at, "table"), "a table goes upwards: each first value is larger than the one before"
+                (*at, "table"),
+                "the first values of a table must increase; one is not larger than the one before",
             )
         if position == "deg" and results[-1][0] - results[0][0] > 360:
             span = results[-1][0] - results[0][0]

@@ -283,7 +283,7 @@ class Showing(Staged):
                 position, velocity, bent, 1j * stance.coriolis(slide, speed) / MM * stance.direction(slide)
             )
 
-    # ------------------------------------------------------------------------ told
+    # ------------------------------------------------------------------------ text
 
     def _evaluated(self) -> tuple[str, ...]:
         wanted = [*self.quantities]

@@ -62,18 +62,18 @@ class StudyAttempt:
     """Variant with the stored answers to it."""
 
     def __init__(self, variant: Variant, store: ExerciseStore):
-        self.variant, self.kept = variant, store
+        self.variant, self.store = variant, store
 
     @property
     def answers(self) -> dict[str, Any]:
         """Last answer to each question that is not blank; a file may hold answers to other questions."""
-        mine = self.kept.of(self.variant.seed, "answers")
+        mine = self.store.of(self.variant.seed, "answers")
         return {name: answer for name, answer in mine.items() if name in self.variant.part_ids}
 
     @property
     def predictions(self) -> dict[str, Any]:
         """Stored predictions."""
-        return self.kept.of(self.variant.seed, "predictions")
+        return self.store.of(self.variant.seed, "predictions")
 
     def marked(self) -> CheckedAnswers:
         """Mark the stored answers, without storing anything."""
@@ -89,13 +89,13 @@ class StudyAttempt:
             marking = mark(self.variant, now)
         except Exception:
             # Nothing is lost by a fault of the course.
-            self.kept.add(self.variant.seed, "answers", dict(given))
+            self.store.add(self.variant.seed, "answers", dict(given))
             raise
-        copied, theirs = same_as_another(self.variant, self.kept, given, marking)
+        copied, theirs = same_as_another(self.variant, self.store, given, marking)
         seed = self.variant.seed
         mine = {n: a for n, a in now.items() if n not in theirs}
-        new = marked_answers(self.variant, mine, marking, self.kept.happened(seed))
-        self.kept.note(seed, new)
+        new = marked_answers(self.variant, mine, marking, self.store.happened(seed))
+        self.store.note(seed, new)
         return CheckedAnswers(marking, now, copied, tuple(item["part"] for item in new))
 
     # ---------------------------------------------------------------- right answers
@@ -166,11 +166,11 @@ class StudyAttempt:
     def note(self, event: str, part: str, **more: Any) -> None:
         """Record that something was shown, once."""
         entries = {"part": part, "what": event, **more}
-        if not any(entries.items() <= item.items() for item in self.kept.happened(self.variant.seed)):
-            self.kept.note(self.variant.seed, [entries])
+        if not any(entries.items() <= item.items() for item in self.store.happened(self.variant.seed)):
+            self.store.note(self.variant.seed, [entries])
 
     def _happened(self, event: str) -> Collection[Mapping[str, Any]]:
-        return [e for e in self.kept.happened(self.variant.seed) if e["what"] == event]
+        return [e for e in self.store.happened(self.variant.seed) if e["what"] == event]
 
 
 _NEAR = 0.1  #: of the reference; the marks decide what is right, this which choice it belongs to

@@ -41,7 +41,7 @@ def compare(
 
     Numbers agree within a tenth, angles within 10°, whole turns apart or not; texts and truths when they are
     the same. Numbers may be texts with a comma and a unit, truths yes and no in any language. A prediction
-    that is None or blank is shown as not made, and one under a name that nothing has come out of is told.
+    that is None or blank is shown as not made, and one under a name without a result is reported.
 
     Parameters
     ----------

@@ -323,7 +323,7 @@ def errors_shown(variant: Variant, part: Part) -> Iterator[str]:
 
 Called = Callable[["CourseExercise[Any]", str], str]  #: how an exercise is called in a language
 
-_SKILLS = 6  #: that are told, the last lost first
+_SKILLS = 6  #: that are listed, the last lost first
 
 
 def next_step(
@@ -343,7 +343,7 @@ def _errors(course: Course[Any], exercise: str) -> Collection[str]:
         return ()
 
 
-def told_standings(course: Course[Any], progress: Progress, on: date, lang: str) -> str:
+def standings_text(course: Course[Any], progress: Progress, on: date, lang: str) -> str:
     """Return a line for each exercise begun, as a Markdown list; empty where there is none."""
     texts = words(lang)["study"]["progress"]
     return "\n".join(
@@ -361,18 +361,18 @@ def _line(course: Course[Any], item: ExerciseProgress, on: date, lang: str, text
     )
     if item.due is None:
         return f"- {line}"
-    again = text["due"] if item.due <= on else text["again"].format(day=told_date(item.due, lang))
+    again = text["due"] if item.due <= on else text["again"].format(day=date_text(item.due, lang))
     return f"- {line} {again}"
 
 
-def told_skills(course: Course[Any], progress: Progress, lang: str, label: Called | None = None) -> str:
+def skills_text(course: Course[Any], progress: Progress, lang: str, label: Called | None = None) -> str:
     """Return the skills lost since and those recovered, as Markdown lists; ``label`` as for
-    :func:`told_advice`."""
+    :func:`advice_text`."""
     texts = words(lang)["study"]["progress"]
     lost = sorted(
         (s for s in skills(progress) if s.last_lost), key=lambda s: s.last_lost or date.min, reverse=True
     )
-    named = [(s, text) for s in lost if (text := told_skill(course, s.id, s.exercise, lang))]
+    named = [(s, text) for s in lost if (text := skill_text(course, s.id, s.exercise, lang))]
     pieces = []
     for head, chosen in (
         ("open", [(s, t) for s, t in named if s.is_open]),
@@ -394,7 +394,7 @@ def _skill_line(course: Course[Any], skill: Skill, text: str, lang: str, label: 
     return f"- {' '.join(text.split())}{f' ({heading})' if heading else ''}"
 
 
-def told_skill(course: Course[Any], skill: str, exercise: str, lang: str) -> str:
+def skill_text(course: Course[Any], skill: str, exercise: str, lang: str) -> str:
     """Return the words for a skill; empty where it has no name here."""
     family, _, name = skill.partition(":")
     texts = words(lang)["study"]["skills"]
@@ -405,20 +405,20 @@ def told_skill(course: Course[Any], skill: str, exercise: str, lang: str) -> str
     if family != "mistake" or exercise not in course:
         return ""
     try:
-        return course[exercise].variant(0, lang).told(name)
+        return course[exercise].variant(0, lang).mistake_text(name)
     except (CourseworkError, KeyError):
         return ""
 
 
-def told_advice(course: Course[Any], advice: Advice, lang: str, label: Called | None = None) -> str:
+def advice_text(course: Course[Any], advice: Advice, lang: str, label: Called | None = None) -> str:
     """Return the reason for the recommended exercise, in a sentence or two; ``label`` names an exercise, by
     default by title and name."""
     texts = words(lang)["study"]["next"]
-    skill = told_skill(course, advice.skill, advice.exercise, lang) if advice.skill else ""
+    skill = skill_text(course, advice.skill, advice.exercise, lang) if advice.skill else ""
     why = "new" if advice.why == "skill" and not skill else advice.why
     return texts[why].format(
         title=(label or title)(course[advice.exercise], lang),
-        day=told_date(advice.day, lang) if advice.day else "",
+        day=date_text(advice.day, lang) if advice.day else "",
         skill=" ".join(skill.split()),
         count=len(advice.parts),
     )
@@ -429,5 +429,5 @@ def title(exercise: CourseExercise[Any], lang: str) -> str:
     return f"{exercise.title(lang)} (`{exercise.name}`)"
 
 
-def told_date(day: date, lang: str) -> str:
+def date_text(day: date, lang: str) -> str:
     return str(words(lang)["study"]["progress"]["date"]).format(day=day.day, month=day.month, year=day.year)

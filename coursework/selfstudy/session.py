@@ -19,7 +19,7 @@ from coursework.markup.shown import NotebookDisplay, SvgPicture
 from coursework.model import Part
 from coursework.rendering.displayed import DisplayedAnimation
 from coursework.rendering.views import offered, points_number
-from coursework.scenes.animation import told_by_motion
+from coursework.scenes.animation import shown_by_motion
 from coursework.scenes.gauges import EFFECTS
 from coursework.selfstudy import hints, predictions, wording
 from coursework.selfstudy.attempt import (
@@ -33,11 +33,11 @@ from coursework.selfstudy.attempt import (
 )
 from coursework.selfstudy.lessons import curves, usual_parts
 from coursework.selfstudy.mastery import (
+    advice_text,
     mark_what_came_unmarked,
     next_step,
-    told_advice,
-    told_skills,
-    told_standings,
+    skills_text,
+    standings_text,
 )
 from coursework.selfstudy.predictions import Prediction
 from coursework.selfstudy.progress import (
@@ -56,8 +56,8 @@ from coursework.selfstudy.worked import (
     blanks,
     example_variant,
     has_example,
+    steps_text,
     theory,
-    told_steps,
     without_theory,
 )
 from coursework.sheets.handout import handout
@@ -142,7 +142,7 @@ def open_session(
     UnknownName
         No such exercise or language.
     """
-    words(lang)  # an unknown language is told before anything is said in it
+    words(lang)  # an unknown language is reported before anything is printed in it
     wording.expect(lang, "exercise", exercise, course.names)
     item = course[exercise]
     if version is not None and version != item.version:
@@ -237,7 +237,7 @@ class StudySession:
         """Return the mechanism over its cycle; ``effects`` as in
         :class:`~coursework.scenes.animation.Animation`.
 
-        Unless told, paths and velocities, where the solution states them; the figure alone while questions
+        By default paths and velocities, where the solution states them; the figure alone while questions
         are left.
 
         Raises
@@ -257,8 +257,8 @@ class StudySession:
             displayed = ", ".join(dict.fromkeys(("position", *DisplayedAnimation(self.variant).available)))
             raise wording.refused(self.variant.lang, "no_effect", names=displayed) from None
         left = self._attempt.open_parts
-        if told := [name for name in told_by_motion(self.variant) if name in left]:
-            return self._display(self._texts["motion_tells"].format(names=_names(told)))
+        if shown := [name for name in shown_by_motion(self.variant) if name in left]:
+            return self._display(self._texts["motion_tells"].format(names=_names(shown)))
         if not effects:
             usual = [e for e in ("position", "velocity") if e in moving.available]
             moving = DisplayedAnimation(self.variant, usual)
@@ -321,8 +321,8 @@ class StudySession:
     def _arguments_of(
         self, method: str, kind: str, text: Any, named: Mapping[str, Any], names: Collection[str]
     ) -> tuple[dict[str, Any], list[str]]:
-        """Return what a method is told, by the names that it knows, and what is said of names that it does
-        not know. Raises UnknownName: it knows none of the names."""
+        """Return the arguments of a method, by the names that it knows, and the messages about names that it
+        does not know. Raises UnknownName: it knows none of the names."""
         results: dict[str, Any] = {}
         strange: list[UnknownName] = []
         under = self._asked_under if kind == "prediction" else self._keys
@@ -404,8 +404,8 @@ class StudySession:
         """Mark answers, by the name or number of the question, and give feedback; stored answers fill in for
         blank ones.
 
-        An entry ``student`` is no answer. The value of an answer is never told. ``check(rA="238")`` does as
-        well.
+        An entry ``student`` is no answer. The value of an answer is never printed. ``check(rA="238")`` does
+        as well.
 
         Raises
         ------
@@ -646,7 +646,7 @@ class StudySession:
         result = item.fresh() if begun else item
         result._variable = "following"
         begin = self._texts["next"]["begin"].format(call=f"`{result._variable}.statement()`")
-        result._opening = f"{told_advice(course, advice, self.variant.lang)} {begin}"
+        result._opening = f"{advice_text(course, advice, self.variant.lang)} {begin}"
         return result
 
     @property
@@ -675,8 +675,8 @@ class StudySession:
         course, done = self._course, self._store.progress
         return self._display(
             "\n".join(lines),
-            told_standings(course, done, self._today, lang),
-            told_skills(course, done, lang),
+            standings_text(course, done, self._today, lang),
+            skills_text(course, done, lang),
             self._trouble,
         )
 
@@ -739,7 +739,7 @@ class ExampleSession(StudySession):
         if sheet.figure is not None:
             pieces.append(SvgPicture(sheet.figure.outlined_svg(), sheet.figure_alt))
         pieces.append("\n".join(given))
-        pieces.append(told_steps(self._full_sheet, self.level, self.variant.parts, self._keys, texts))
+        pieces.append(steps_text(self._full_sheet, self.level, self.variant.parts, self._keys, texts))
         fill = ", ".join(f'"{key}": ""' for key in self._keys.values())
         pieces.append(texts["fill"].format(call=f"`{self._name}.check({{{fill}}})`"))
         return self._display(*pieces, self._trouble)

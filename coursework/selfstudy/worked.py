@@ -164,7 +164,7 @@ def _blank(variant: Variant, part: Part, step: Step, keys: Mapping[str, str], te
     return str(form.format(symbol=f"${step.symbol}$", question=question, key=key))
 
 
-def told_steps(
+def steps_text(
     variant: Variant,
     level: int,
     left: Sequence[Part],
@@ -266,7 +266,7 @@ class WorkedExample(NotebookDisplay):
         if not self.level:
             return "\n\n".join([title, *map(hints.step_text, _leading_to(self._asking, wanted))])
         texts = words(self.lang)["lesson"]
-        text = told_steps(self._asking, self.level, self.left, self._keys, texts, in_lesson=True)
+        text = steps_text(self._asking, self.level, self.left, self._keys, texts, in_lesson=True)
         return f"{title}\n\n{text}"
 
     @property
@@ -380,7 +380,7 @@ def worked(
     """
     if level not in range(BARE + 1):
         raise WrongValue(
-            "a worked example has a level from 0, the whole, to {most}, bare; found {level!r}",
+            "a worked example has a level from 0 (complete) to {most} (no steps); found {level!r}",
             most=BARE,
             level=level,
         )

@@ -60,7 +60,7 @@ class DrawnPiece:
     figure: Figure | Picture | None = None
     svg: str = ""
     stills: tuple[str, ...] = ()
-    tall: float = 0.0  #: mm that it may take on paper; as any other unless told
+    tall: float = 0.0  #: mm that it may take on paper; 0 for the size of any other
     number: str = ""  #: 3.4: the fourth figure of the third lesson; empty in an example and in an answer
     example: str = ""  #: Example 3.2: that which it poses, if it is the first drawing of one
     #: Whether paper shows it too; what moves beside its own picture does not, and has no number.

@@ -57,7 +57,7 @@ class Question:
     room: int | tuple[int, int] | None = None
     judge: str = ""  #: of the parts that are judged together with this one
     letters: tuple[str, ...] = ()  #: of the choices; none of a sheet that was issued without
-    key: str = ""  #: what a notebook calls its answer; its id unless told
+    key: str = ""  #: what a notebook calls its answer; by default its id
     #: Above a telephone's keyboard: what a key shows, and what it types.
     keys: tuple[tuple[str, str], ...] = ()
     types_numbers: bool = False  #: a keyboard of numbers does, with these keys

@@ -64,7 +64,7 @@ class Worker:
         self._counted: dict[int, str] = {}  #: states of the classes when they were last counted
 
     def run(self) -> None:
-        """Work until the process is told to terminate."""
+        """Work until the process is asked to terminate."""
         self._log_faults(self.take_over)
         self._log_faults(self.prepare_all)
         dates = counts = 0.0
@@ -102,7 +102,7 @@ class Worker:
         if left:
             with self.site.store.begin() as connection:
                 for number, submission in left:
-                    put_job(connection, MARK, number, now, delivery=submission)
+                    put_job(connection, MARK, number, now, submission=submission)
 
     def prepare_all(self) -> None:
         """Queue the preparation of pages of assignments that open soon or opened within a day, since a new
@@ -143,23 +143,23 @@ class Worker:
         return not is_rush or now - first > _LONGEST
 
     def _do(self, job: WorkerJob) -> None:
-        if job.kind == MARK and job.delivery is not None:
-            mark_submission(self.site.course, self.site.store, job.delivery)
+        if job.kind == MARK and job.submission is not None:
+            mark_submission(self.site.course, self.site.store, job.submission)
         elif job.kind == RESCUE and job.person is not None:
             rescue(self.site, job.assignment, job.person, self.site.clock())
         elif job.kind == PREPARE and job.person is not None:
             prepare(self.site, job.assignment, job.person, self.site.clock(), self._variants)
         with self.site.store.begin() as connection:
             drop_job(connection, job.id)
-            if job.kind == MARK and job.delivery is not None:
-                drop_jobs(connection, job.delivery)
+            if job.kind == MARK and job.submission is not None:
+                drop_jobs(connection, job.submission)
 
     def _failed(self, job: WorkerJob, fault: Exception) -> None:
         name = type(fault).__name__
         with self.site.store.begin() as connection:
             is_over = put_back(connection, job, name)
         subject = {
-            MARK: f"delivery {job.delivery}",
+            MARK: f"submission {job.submission}",
             RESCUE: f"what person {job.person} saved",
             PREPARE: f"the page of person {job.person}",
         }[job.kind]
@@ -215,5 +215,5 @@ class Worker:
 
 
 def work(site: Site, name: str) -> None:
-    """Work for a site until this process is told to terminate."""
+    """Work for a site until this process is asked to terminate."""
     Worker(site, name).run()

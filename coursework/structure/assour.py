@@ -97,10 +97,10 @@ def decompose(joints: JointGraph | Iterable[Record], driver: Sequence[int]) -> D
     if counts.h:
         raise Undefined("Assour groups have lower pairs alone; this mechanism has {h} higher", h=counts.h)
     if counts.w != 1:
-        raise Undefined("one driver asks for w = 3 n - 2 b = 1; this mechanism has w = {w}", w=counts.w)
+        raise Undefined("one driver requires w = 3 n - 2 b = 1; this mechanism has w = {w}", w=counts.w)
     if sum({FRAME, body} <= set(joint.bodies) for joint in graph.joints) > 1:
         raise Undefined(
-            "several joints hold body {body} to the frame: as a driver it could not move", body=body
+            "several joints connect body {body} to the frame: as a driver it could not move", body=body
         )
     return Decomposition(body, _ordered(graph, body, _rings(graph, body)))
 
@@ -241,7 +241,7 @@ def _given_out(conditions: Sequence[tuple[Node, Node]], placed: set[Node]) -> li
             if not settle(number, tried):
                 crowd = sorted(n for kind, n in tried if kind == "body") or [n for _, n in ends]
                 raise Undefined(
-                    "bodies {crowd} have more pairs than can move: a part of the mechanism is held twice",
+                    "bodies {crowd} have too many joints to move: part of the mechanism is overconstrained",
                     crowd=crowd,
                 )
     return shares

@@ -1,4 +1,4 @@
-"""Layout of a mechanism's joints on paper: a plane picture in which bodies can be told apart.
+"""Layout of a mechanism's joints on paper: a plane picture in which bodies can be distinguished.
 
 Lengths are free, so any places make a mechanism that closes. Places lie on whole millimetres of paper. They
 are found by moving one joint after another to where the picture reads best: bodies long enough, few bars that

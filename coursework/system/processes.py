@@ -346,7 +346,7 @@ def confined(means: ResourceLimits, function: Callable[..., Any], *arguments: An
     ----------
     means
         The limits. A system without ``setrlimit`` limits the time alone.
-    function, told
+    function, arguments
         A function of a module, and its arguments; these and the result are pickled.
 
     Raises

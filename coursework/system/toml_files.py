@@ -113,12 +113,12 @@ def table_of(source: str, source_name: str) -> dict[str, Any]:
     return table
 
 
-def _syntax_fault(source: str, source_name: str, told: str) -> BadInput:
+def _syntax_fault(source: str, source_name: str, message: str) -> BadInput:
     """Return what the reader of TOML says, with the line as it stands and what would do where people often
     slip."""
-    match = re.fullmatch(r"(.*) \(at line (\d+), column \d+\)", told, re.DOTALL)
+    match = re.fullmatch(r"(.*) \(at line (\d+), column \d+\)", message, re.DOTALL)
     if match is None:
-        return BadInput("{source_name}: {problem}", source_name=source_name, problem=told)
+        return BadInput("{source_name}: {problem}", source_name=source_name, problem=message)
     problem: object = match[1]
     if match[1].startswith(("Cannot overwrite", "Cannot declare", "Duplicate", "Cannot mutate")):
         problem = Message("a name stands here twice")

@@ -3,7 +3,7 @@
 import numpy as np
 
 from coursework.quantities.columns import each, each_stacked
-from coursework.solution import given, mistake, told_after
+from coursework.solution import explained_after, given, mistake
 from coursework.structure.spatial_chains import FREEDOMS, each_distinct, joint_of
 
 from ._solids import _direction, _lines, _parallel_of, _point_of_axis, _row_of, _stiffest
@@ -77,7 +77,7 @@ def Ns(transmitted):
     return each_stacked(len, transmitted)
 
 
-@told_after("transmitted")
+@explained_after("transmitted")
 def rs(_combined):
     """The rank of all the transmitted actions at one point."""
     return each_stacked(lambda one: one.rs, _combined)
@@ -95,7 +95,7 @@ def equivalent(_combined):
     return each_stacked(lambda one: one.equivalent.name, _combined)
 
 
-@told_after("equivalent")
+@explained_after("equivalent")
 def turns(_combined):
     """Of the independent motions, those that differ in their rotation vectors."""
     return each_stacked(lambda one: one.turns, _combined)

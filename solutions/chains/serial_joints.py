@@ -3,7 +3,7 @@
 import numpy as np
 
 from coursework.quantities.columns import each, each_stacked
-from coursework.solution import given, mistake, told_after
+from coursework.solution import explained_after, given, mistake
 from coursework.structure.spatial_chains import FREEDOMS, each_distinct, joint_of
 
 from ._solids import _direction, _freest, _in_parallel, _lines, _point_of_axis, _row_of, _series_of
@@ -81,7 +81,7 @@ def m(Nc):
     return Nc
 
 
-@told_after("free_motions")
+@explained_after("free_motions")
 def m_useful(_combined):
     """The rank of all the free motions at one point."""
     return each_stacked(lambda one: one.m_useful, _combined)
@@ -95,14 +95,14 @@ def h():
     return 0
 
 
-@told_after("m_useful")
+@explained_after("m_useful")
 def equivalent(_combined):
     """No joint at all only where all six motions are free at every pose; where they are at this one alone,
     another."""
     return each_stacked(lambda one: one.equivalent.name, _combined)
 
 
-@told_after("equivalent")
+@explained_after("equivalent")
 def turns(_combined):
     """Of the independent motions, those that differ in their rotation vectors."""
     return each_stacked(lambda one: one.turns, _combined)

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from coursework.solution import given, mistake, told_after
+from coursework.solution import explained_after, given, mistake
 from coursework.structure import grashof
 
 UNITS = {"s": "mm", "l": "mm"}
@@ -26,7 +26,7 @@ def p_plus_q(r1, r2, r3, r4, s_plus_l):
     return r1 + r2 + r3 + r4 - s_plus_l
 
 
-@told_after("s_plus_l", "p_plus_q")
+@explained_after("s_plus_l", "p_plus_q")
 def linkage_type(r1, r2, r3, r4):
     """Can the bars close at all; does s + l reach p + q; and if not, which bar is the shortest?"""
     return grashof.linkage_type(r1, r2, r3, r4)

@@ -101,8 +101,8 @@ def v_told_after(course, *names):
     change(
         course,
         "solutions/crank_pin.py",
-        ("def v(r, omega)", f"@told_after{names}\ndef v(r, omega)"),
-        ("import mistake", "import mistake, told_after"),
+        ("def v(r, omega)", f"@explained_after{names}\ndef v(r, omega)"),
+        ("import mistake", "import mistake, explained_after"),
     )
     return coursework.open_course(course)["crank_pin"]
 
@@ -116,7 +116,7 @@ def test_a_step_may_be_told_after_others(small_course):
 def test_a_step_that_is_told_after_what_is_no_quantity_is_refused(small_course):
     exercise = v_told_after(small_course, "yy", "x")
     with pytest.raises(
-        BadCourse, match=r"crank_pin\.py: v is told after 'yy', which is no quantity; did you mean 'y'"
+        BadCourse, match=r"crank_pin\.py: v is explained after 'yy', which is no quantity; did you mean 'y'"
     ):
         exercise.solution  # noqa: B018
 

@@ -165,7 +165,7 @@ def test_a_formula_that_gives_another_value_fails_and_says_which(substitution, v
 @each_row(
     ("tried", "why"),
     [
-        (step("", r"\num{4}", formula=""), "told in words"),
+        (step("", r"\num{4}", formula=""), "explained in words"),
         (step(r"\num{2} \times k", r"\num{4}"), "k has no value"),
         (step(r"\num{10000} - \num{9999.9}", r"\num{0.1}"), "do not tell"),
         (step(r"\arccos\left(\frac{\num{100.01}}{\num{100.00}}\right)", r"\num{0}^{\circ}"), "do not tell"),
@@ -192,7 +192,7 @@ def test_every_printed_formula_of_the_course_is_proved(name):
     report = CheckReport(name)
     check_formulas(list(COURSE[name].variants(range(5), "en", (ALL,))), report)
     assert report.failures == []
-    assert set(report.unproved.values()) <= {"told in words"}
+    assert set(report.unproved.values()) <= {"explained in words"}
 
 
 @at_once(COURSE.names, COURSE.names[::4])
@@ -302,4 +302,4 @@ def test_pi_and_logarithms_are_printed(small_course):
 def test_what_no_formula_says_is_named(small_course, formula, why):
     step, report = printed_of(small_course, formula)
     assert step.formula == ""
-    assert report.unproved == {"v": f"told in words, since {why}; @formula may say it"}
+    assert report.unproved == {"v": f"explained in words, since {why}; @formula may say it"}

@@ -73,7 +73,7 @@ def test_the_check_finds_no_failure(copied, exercise, variants, capsys):
 
 def test_an_unknown_example_is_told_with_those_there_are(tmp_path, capsys):
     assert run(["new", str(tmp_path / "own"), "--example", "history"]) == 2
-    assert "no example 'history'; there is: engineering" in capsys.readouterr().err
+    assert "no example 'history'; available: engineering" in capsys.readouterr().err
     assert not (tmp_path / "own").exists()
 
 

@@ -12,7 +12,7 @@ from stored_class import ANA, BEN, CLEO, STUDENTS, content
 import coursework
 from coursework.cli import run
 from coursework.database.assignments import assignment_called, issued_content, issued_of, names, put_issued
-from coursework.database.tables import dealt, person, variant
+from coursework.database.tables import issue, person, variant
 from coursework.errors import BadInput
 from coursework.system.tables import json_text
 
@@ -78,9 +78,9 @@ def test_versions_and_sittings_come_back(store, course):
 
 def test_the_same_again_adds_nothing(store, course):
     first = put(store, content(course))
-    before = counted(store, dealt), counted(store, variant), counted(store, person)
+    before = counted(store, issue), counted(store, variant), counted(store, person)
     assert put(store, content(course)) == first
-    assert (counted(store, dealt), counted(store, variant), counted(store, person)) == before == (3, 3, 3)
+    assert (counted(store, issue), counted(store, variant), counted(store, person)) == before == (3, 3, 3)
 
 
 def test_who_comes_late_is_added_and_takes_the_place_that_is_told(store, course):
@@ -142,4 +142,4 @@ def test_one_person_of_two_assignments_is_one(store, course):
     put(store, content(course))
     put(store, content(course, name="week4"))
     assert counted(store, person) == 3
-    assert counted(store, dealt) == 6
+    assert counted(store, issue) == 6

@@ -62,7 +62,7 @@ def full(store, small_course):
             "area": {**person, "assignment_id": number, "class_group": ODD},
             "identity": {**person, "issuer": "https://a", "subject": ""},
             "worksheet": {"assignment_id": number, "file": "f", "lines": [[ODD, None, 0.1]]},
-            "placing": {"assignment_id": number, "row": "r", "delivery_id": None, "by": "Roe", "made": AT},
+            "placing": {"assignment_id": number, "row": "r", "submission_id": None, "by": "Roe", "made": AT},
             "progress": {**person, "entry": {"a": {"b": [1.5, None]}}, "digest": "d"},
             "draft": {
                 **person,
@@ -87,9 +87,9 @@ def full(store, small_course):
                 "file": ODD,
                 "number": 1,
                 "student": BEN,
-                "kept": {"a": [ODD, 0.1]},
+                "reading": {"a": [ODD, 0.1]},
                 "picture": "AAAA",
-                "came": AT,
+                "received_at": AT,
             },
             "typed": {
                 "assignment_id": number,
@@ -104,7 +104,7 @@ def full(store, small_course):
             "job": {
                 "kind": "mark",
                 "assignment_id": number,
-                "delivery_id": 1,
+                "submission_id": 1,
                 "person_id": None,
                 "tries": 3,
                 "fault": ODD,

@@ -249,7 +249,7 @@ def test_a_report_of_a_database_is_that_of_the_folder(one):
         (["grade", "first.csv"], "--issued"),
         (["grade", "first.csv", "--db", "{url}", "--assignment", "week4"], "did you mean 'week3'"),
         (["grade", "none.csv", "--db", "{url}"], "no such file"),
-        (["grade", "first.csv", "--issued", "i.json", "--assignment", "x"], "--assignment is of a database"),
+        (["grade", "first.csv", "--issued", "i.json", "--assignment", "x"], "--assignment needs a database"),
         (["grade", "--from", "first.csv", "--db", "{url}"], "--from takes the marks"),
         (["report", "--db", "{url}", "--out", "r"], "nothing of it is marked yet"),
         (["report"], "name one of them"),
@@ -274,7 +274,7 @@ def test_a_file_that_cannot_be_marked_at_all_is_not_kept(one, capsys):
     assert one.status("grade", bad, "--db", one.url) == 2
     capsys.readouterr()
     one.status("database", "show", one.url, "--json")
-    assert json.loads(capsys.readouterr().out)[0]["deliveries"] == 0
+    assert json.loads(capsys.readouterr().out)[0]["submissions"] == 0
 
 
 def test_a_longer_roster_adds_and_another_build_is_refused(one, capsys):

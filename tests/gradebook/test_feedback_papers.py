@@ -277,7 +277,7 @@ def test_a_course_may_offer_no_other_variant_and_says_which_lesson_teaches_what(
     for wrong, told in (
         ('[lessons]\ncrank_pim = "rods"', "'crank_pim'; did you mean 'crank_pin'"),
         ('[lessons]\ncrank_pin = "rod"', "no lesson 'rod'; did you mean 'rods'"),
-        ('[lessons]\ncrank_pin = { lesson = "rods", sections = [3] }', "no section 3; there is 1, 2"),
+        ('[lessons]\ncrank_pin = { lesson = "rods", sections = [3] }', "no section 3; available: 1, 2"),
         ("[lessons]\ncrank_pin = 3", "found 3"),
         ("[feedback]\npractise = false", "did you mean 'practice'"),
         ("[feedback]\npractice = 1", "practice is true or false"),

@@ -179,7 +179,7 @@ def test_sakais_export_is_filled_by_the_maximum_in_its_title(fill):
             "moodle_gradebook_en.csv",
             "Zeugnis",
             (),
-            "there is: Course total, Last downloaded from this course, Week 3",
+            "available: Course total, Last downloaded from this course, Week 3",
         ),
         ("moodl", "moodle_gradebook_en.csv", "Week 3", (), "did you mean 'moodle'?"),
         (

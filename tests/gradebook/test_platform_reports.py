@@ -214,7 +214,7 @@ def test_another_version_of_the_exercise_is_not_marked(tmp_path):
     book = graded(tmp_path, path)
     assert len(book.rejected) == 9
     assert (
-        "the answers are to version 2 of slotted_mechanism, and version 1 was issued"
+        "the answers belong to version 2 of slotted_mechanism, and version 1 was issued"
         in book.rejected[0].reason
     )
 

@@ -67,7 +67,7 @@ def test_words_that_cannot_be_used_are_one_line_with_file_and_place(spanish, cap
 
 
 def test_a_language_that_is_not_there_names_the_file_that_would_make_it_one():
-    with pytest.raises(UnknownName, match=r"no language 'it'; there is en, fr; .*language.it\.toml"):
+    with pytest.raises(UnknownName, match=r"no language 'it'; available: en, fr; .*language.it\.toml"):
         language.words("it")
 
 

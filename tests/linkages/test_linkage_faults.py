@@ -48,7 +48,7 @@ FAULTS = [
         17,
         "given quantity such as theta2",
     ),
-    ('at = "O", angle = "theta2", ', 'at = "O", ', 16, "nothing drives"),
+    ('at = "O", angle = "theta2", ', 'at = "O", ', 16, "there is no driver"),
     ('4 = { at = "C", ', '4 = { at = "C", angle = "theta2", ', 19, "two bodies are driven, 2 and 4"),
     (
         '4 = { at = "C", points = { B = "r4" } }',

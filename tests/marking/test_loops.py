@@ -151,7 +151,7 @@ def test_the_two_projections_may_be_exchanged_turned_and_complex(name):
     report = CheckReport(name)
     check_loops(asking_all(name), report)
     assert report.failures == []
-    assert report.counts["loops told"] > 30
+    assert report.counts["loops explained"] > 30
 
 
 @every_exercise

@@ -276,7 +276,7 @@ ISSUED = {
     ),
     "100 000 lists": (lambda data: DEEP.encode(), "nested too deep"),
     "a sitting that is a text": (changed(("issued", 0, "sitting"), '"2"'), "sitting is a whole number"),
-    "nobody's columns": (changed(("students",), '["Ana"]'), "the students in it are not columns"),
+    "nobody's columns": (changed(("students",), '["Ana"]'), "the students in it have no columns"),
 }
 
 

@@ -135,7 +135,7 @@ WRONG = {
         "line 8",
         "r1 is in mm",
     ),
-    "[[loads]]\non = 'B'\ntable = [['0 deg', '1 N'], ['0 deg', '2 N']]": ("line 4", "goes upwards"),
+    "[[loads]]\non = 'B'\ntable = [['0 deg', '1 N'], ['0 deg', '2 N']]": ("line 4", "must increase"),
     "[[loads]]\non = 'B'\nbody = '2'\nforce = '1 N'\nangle = '0 deg'": ("line 4", "no body '2'"),
     "[friction]\nB = 0.1": ("line 3", "B is a pin: its friction has the radius"),
     "[friction]\nB = { coefficient = -0.1, radius = 3 }": ("line 3", "not negative"),

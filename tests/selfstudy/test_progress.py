@@ -284,7 +284,7 @@ def test_progress_tells_what_cost_an_answer_in_words_that_judge_nobody(lang, her
     session.check({"alpha4": f"{wrong:.6g}"})
     said = flat(session.progress())
     assert flat(SAID[lang]["progress"]["open"]) in said
-    assert flat(session.variant.told("no_coriolis"))[:40].split("$")[0] in said
+    assert flat(session.variant.mistake_text("no_coriolis"))[:40].split("$")[0] in said
     for word in ("bad", "weak", "poor", "fail", "mauvais", "faible", "échec"):
         assert word not in said.lower().split()
 

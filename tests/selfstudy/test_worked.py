@@ -63,7 +63,7 @@ def test_what_is_put_into_the_blanks_is_marked():
 
 
 def test_what_is_none_is_refused():
-    with pytest.raises(WrongValue, match="from 0, the whole, to 4, bare; found 7"):
+    with pytest.raises(WrongValue, match=r"from 0 \(complete\) to 4 \(no steps\); found 7"):
         coursework.worked(NAME, level=7)
     with pytest.raises(UnknownName, match="theta33"):
         coursework.worked(NAME, parts=("theta33",))

@@ -46,7 +46,7 @@ def test_a_demonstration_is_the_same_each_time(demo, tmp_path):
 def test_a_class_of_twelve_has_a_teacher_and_one_who_has_not_handed_in(demo):
     roles = [row["role"] for row in demo["account"]]
     assert (roles.count("student"), roles.count("administrator")) == (12, 1)
-    assert len(demo["delivery"]) == 11
+    assert len(demo["submission"]) == 11
     assert [row["published"] is not None for row in demo["assignment"]] == [True, True]
     assert len({row["verdict"].partition(":")[0] for row in demo["mark"]}) >= 6
 

@@ -92,8 +92,8 @@ def test_a_paper_keeps_its_drawings_beside_what_is_handed_in(class_of_three):
     assert shown(browser.get(address).text, "e2-drawing") == HOSTILE
     browser.fill(f"{address}/hand-in", {"_number": "1", "e2-kl": "2"})
     with class_of_three.site.store.reading() as connection:
-        (delivery,) = submissions_of(connection, number, class_of_three.ids[ZOE])
-        answers = answers_of(connection, delivery.id)
+        (submission,) = submissions_of(connection, number, class_of_three.ids[ZOE])
+        answers = answers_of(connection, submission.id)
         kept = drafts(connection, class_of_three.ids[ZOE], f"assignment/{number}")
     assert not any("drawing" in part or "alert" in text for *_, part, text in answers)
     assert kept["e2-drawing"].text == HOSTILE

@@ -167,9 +167,9 @@ class Staffed(Filled):
                     "file": f"{name}.pdf",
                     "number": 1,
                     "student": name,
-                    "kept": {},
+                    "reading": {},
                     "picture": "AAAA",
-                    "came": self.at,
+                    "received_at": self.at,
                 }
                 connection.execute(insert(scanned).values(row))
         mark_new(self.site.course, self.site.store, self.number)

@@ -49,14 +49,14 @@ class Handed:
                 paper = student_paper(connection, site.course, place, person, "fr")
             texts = {name: f"{number}.5" for number, name in enumerate(paper.boxes)}
             made = submit(site, place, paper, person, texts, 1, now, ON_THE_PAGE)
-            self.told.receipts[made.delivery.receipt] = (person, texts)
+            self.told.receipts[made.submission.receipt] = (person, texts)
 
     @property
     def lost(self):
         return self.load.lost(self.store, self.told, self.homework)
 
 
-@pytest.mark.parametrize("base", ["answer", "delivery", "mark", "draft"])
+@pytest.mark.parametrize("base", ["answer", "submission", "mark", "draft"])
 def test_what_is_lost_is_found(load, store, base, monkeypatch):
     monkeypatch.setattr(load, "found_ahead", lambda: load.Ahead({}, {}))
     handed = Handed(load, store)
@@ -75,7 +75,7 @@ def _of_one(table):
 
 BREAK = {
     "answer": _of_one(tables.answer),
-    "delivery": lambda connection: connection.execute(update(tables.delivery).values(receipt="X")),
+    "submission": lambda connection: connection.execute(update(tables.submission).values(receipt="X")),
     "mark": lambda connection: [connection.execute(delete(t)) for t in (tables.mark, tables.marking)],
 }
 

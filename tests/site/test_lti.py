@@ -19,7 +19,7 @@ from coursework.database.assignments import issued_of
 from coursework.database.audit import noted
 from coursework.database.decisions import GIVEN, decide
 from coursework.database.publication import CHARGE, NEVER
-from coursework.database.tables import account, delivery, drawing, identity, person
+from coursework.database.tables import account, drawing, identity, person, submission
 from coursework.errors import BadInput
 from coursework.gradebook.decisions import Decision
 from coursework.site.lti.service import settings_of
@@ -191,7 +191,7 @@ def test_a_score_is_that_of_the_class_page(linked):
     assert (score["scoreGiven"], score["scoreMaximum"]) == (row.points, row.out_of)
     assert (score["userId"], score["gradingProgress"]) == ("ada", "FullyGraded")
     assert "Receipt" in text_of(visitor.browser.get(path))
-    assert linked.one(delivery.c.source) == [("site: from a platform",)]
+    assert linked.one(submission.c.source) == [("site: from a platform",)]
 
 
 def test_a_decision_sends_the_score_anew(linked):
@@ -215,7 +215,7 @@ def test_a_form_that_comes_twice_is_one_hand_in_and_tries_are_those_of_the_publi
     texts = linked.right("Ada Byron")
     for _ in range(2):
         assert visitor.hand_in(path, page, texts).status_code == 303
-    assert linked.one(func.count(delivery.c.id)) == [(1,)]
+    assert linked.one(func.count(submission.c.id)) == [(1,)]
     sheet = visitor.browser.get(f"{path}?again=1")
     assert field(sheet.text, "_number") == "2"
     assert visitor.hand_in(path, sheet, texts | dict.fromkeys(list(texts)[:1], "7")).status_code == 303

@@ -235,7 +235,7 @@ def test_no_dump_holds_it(served, tmp_path):
     prepared_by_worker(served)
     assert rows(served)
     dump(served.site.store, tmp_path / "dump")
-    assert (tmp_path / "dump" / "dealt.csv").exists()
+    assert (tmp_path / "dump" / "issue.csv").exists()
     assert not (tmp_path / "dump" / "prepared.csv").exists()
 
 

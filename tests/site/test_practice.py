@@ -16,7 +16,7 @@ from coursework import open_course
 from coursework.course.lessons import taught_by
 from coursework.database import tables
 from coursework.database.progress import PersonProgress
-from coursework.scenes.animation import told_by_motion
+from coursework.scenes.animation import shown_by_motion
 from coursework.selfstudy.mastery import outings
 
 COURSE = open_course()
@@ -303,7 +303,7 @@ def offers_motion(html):
 @pytest.mark.parametrize("name", ANIMATED)
 def test_a_page_offers_its_motion_or_says_after_which_answers_it_comes(class_of_three, name):
     zoe = Practising(class_of_three, class_of_three.browser(ZOE), name)
-    told, piece = set(told_by_motion(zoe.variant)), {"HX-Request": "true"}
+    told, piece = set(shown_by_motion(zoe.variant)), {"HX-Request": "true"}
     (moves,) = re.findall(r'<div id="moves".*?</div>', zoe.page(), re.DOTALL)
     named = set(re.findall(rf'href="#below-{BOX}(\w+)"', moves))
     assert offers_motion(moves) == (not told)

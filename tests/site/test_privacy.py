@@ -56,11 +56,14 @@ def test_somebody_is_given_what_is_kept_of_them_and_nothing_of_others(site):
 
 def test_marks_are_not_had_before_they_are_told(site):
     def own():
-        return set(archive_of(site.browser(ZOE).get("/account/data")).namelist()) & {"mark.csv", "dealt.csv"}
+        return set(archive_of(site.browser(ZOE).get("/account/data")).namelist()) & {
+            "mark.csv",
+            "issue.csv",
+        }
 
-    assert own() == {"dealt.csv"}, "it is open"
+    assert own() == {"issue.csv"}, "it is open"
     site.at += timedelta(hours=3)
-    assert own() == {"dealt.csv", "mark.csv"}, "it has closed"
+    assert own() == {"issue.csv", "mark.csv"}, "it has closed"
     with site.site.store.begin() as connection:
         publish(connection, site.number, Publication(opens=site.at + timedelta(hours=1)))
     assert not own(), "it is to come"
@@ -68,7 +71,7 @@ def test_marks_are_not_had_before_they_are_told(site):
         publish(connection, site.number, None)
     assert not own(), "it is not published"
     theirs = archive_of(site.browser(TEACHER).get(f"/desk/people/{site.ids[ZOE]}/data")).namelist()
-    assert {"mark.csv", "marking.csv", "dealt.csv"} <= set(theirs)
+    assert {"mark.csv", "marking.csv", "issue.csv"} <= set(theirs)
 
 
 def lea(site):
@@ -148,7 +151,7 @@ def test_no_table_holds_who_was_erased(site):
     with site.site.store.reading() as connection:
         after = {one.name: connection.execute(select(one)).all() for one in METADATA.sorted_tables}
     lost = {
-        name: set(map(str, before[name])) - set(map(str, after[name])) for name in ("mark", "answer", "dealt")
+        name: set(map(str, before[name])) - set(map(str, after[name])) for name in ("mark", "answer", "issue")
     }
     gone = {row.id for row in before["marking"]} - {row.id for row in after["marking"]}
     assert {row.student for row in before["marking"] if row.id in gone} == {LEA}
@@ -156,7 +159,7 @@ def test_no_table_holds_who_was_erased(site):
     assert lost["answer"] == {
         str(row) for row in before["answer"] if row.student.casefold() == LEA.casefold()
     }
-    assert lost["dealt"] == {str(row) for row in before["dealt"] if row.student == LEA}
+    assert lost["issue"] == {str(row) for row in before["issue"] if row.student == LEA}
     assert staff.get(f"/desk/people/{person}").status_code == 404
     assert "erased" in staff.get("/desk/audit").text
 
@@ -176,8 +179,8 @@ NOBODYS = {
     "variant.seed",
     "variant.letter",
     "variant.record",
-    "delivery.digest",
-    "delivery.receipt",
+    "submission.digest",
+    "submission.receipt",
     "answer.exercise",
     "answer.seed",
     "answer.part",
@@ -203,10 +206,10 @@ NOBODYS = {
     "placing.row",
     "audit.what",
     "audit.address",
-    "dealt",
+    "issue",
     "scanned.page",
     "scanned.student",
-    "scanned.kept",
+    "scanned.reading",
     "scanned.picture",
     "typed.student",
     "typed.exercise",

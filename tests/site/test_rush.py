@@ -15,11 +15,12 @@ from site_people import HOME, MAX, ZOE, Class, count_of, seal_of, signed_in, sta
 from sqlalchemy import func, insert, select
 from starlette.concurrency import run_in_threadpool
 
+from coursework.database import tables
 from coursework.database.jobs import MARK, MOST_TRIES, put_job, take_job, waiting
 from coursework.database.people import put_account, put_person
 from coursework.database.publication import record_passed_date
 from coursework.database.submissions import submissions_of
-from coursework.database.tables import delivery, job, mark, marking
+from coursework.database.tables import job, mark, marking
 from coursework.issuing.students import folded
 from coursework.site.frame import arrivals
 from coursework.site.frame.cookies import COOKIE
@@ -221,7 +222,9 @@ async def sent_from_queue(one, number):
         (place,) = student_assignments(connection, one.ids[ZOE], number)
         paper = student_paper(connection, one.site.course, place, one.ids[ZOE], "en")
     texts = dict.fromkeys(paper.fields, "7")
-    return submission.submit(one.site, place, paper, one.ids[ZOE], texts, 1, CLOSES - SECOND, "site").delivery
+    return submission.submit(
+        one.site, place, paper, one.ids[ZOE], texts, 1, CLOSES - SECOND, "site"
+    ).submission
 
 
 def test_the_boxes_that_a_record_tells_are_those_of_the_page(served):
@@ -273,7 +276,7 @@ def test_a_job_that_its_worker_left_is_taken_again_and_nothing_is_marked_twice(s
         assert take_job(connection, "other", one.at).tries == 3
     with one.site.store.begin() as connection:
         assert take_job(connection, "other", one.at + SECOND) is None  # it is given up: it ends its workers
-        given_up = connection.execute(select(job.c.delivery_id).where(job.c.fault != "")).scalars().all()
+        given_up = connection.execute(select(job.c.submission_id).where(job.c.fault != "")).scalars().all()
         assert given_up == [delivered(one, number)[0].id]
         connection.execute(job.update().values(fault="", tries=0))
     worked_off(one)
@@ -288,10 +291,10 @@ def test_two_workers_never_take_the_same_job(site_class):
     number = dealt(one)
     handed_in(one.browser(ZOE), number, right(one, ZOE))
     with one.site.store.begin() as connection:
-        made = connection.execute(select(delivery.c.id)).scalar()
+        made = connection.execute(select(tables.submission.c.id)).scalar()
         connection.execute(job.delete())
         for _ in range(20):
-            put_job(connection, MARK, number, one.at, delivery=made)
+            put_job(connection, MARK, number, one.at, submission=made)
 
     def taken(name):
         found = []
@@ -325,7 +328,7 @@ def test_a_job_that_always_fails_is_given_up_and_told(served, monkeypatch, caplo
     worked_off(served)
     assert tried.count(bad) == MOST_TRIES
     assert marks_of(served, number) == 2  # the others' are marked
-    assert f"delivery {bad}" in caplog.text
+    assert f"submission {bad}" in caplog.text
     assert "could not be marked" in browser.get(address).text
     with served.site.store.reading() as connection:
         faults = connection.execute(select(job.c.fault).where(job.c.fault != "")).scalars().all()

@@ -209,7 +209,7 @@ def test_a_driver_is_a_body_joined_to_the_frame(driver):
         (LIBRARY["figure_6_cam"], "lower pairs alone"),
         ([*FOUR_BAR, {"between": [1, 3], "kind": "revolute"}], "w = -1"),
         # Body 3 pinned twice to the driver, body 4 dangling: one freedom in all, and no groups.
-        ([{"between": p, "kind": "revolute"} for p in ([1, 2], [2, 3], [2, 3], [1, 4])], "held twice"),
+        ([{"between": p, "kind": "revolute"} for p in ([1, 2], [2, 3], [2, 3], [1, 4])], "overconstrained"),
         # The driver itself pinned twice to the frame.
         ([{"between": p, "kind": "revolute"} for p in ([1, 2], [1, 2], [2, 3], [3, 4])], "several joints"),
     ],

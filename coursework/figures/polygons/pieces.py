@@ -2,7 +2,7 @@ r"""Parts of polygons: a driven crank, two bars that meet, a rod and its slider,
 
 Each gives the sides of a velocity polygon (``_v``) or of an acceleration polygon (``_a``) in order of
 construction. Image points have the small letters of their points. Vectors are complex numbers in mm; what a
-bar's length and rate are called is told as LaTeX.
+bar's length and rate are called is given as LaTeX.
 """
 
 from __future__ import annotations

@@ -17,7 +17,7 @@ from coursework.errors import first_few
 from coursework.gradebook.statistics.marks import columns_of
 
 COLUMNS = ("student", "exercise", "seed", "like seed", "issued to", "answers", "of")
-FEWEST = 3  #: answers that are another variant's, before it is told
+FEWEST = 3  #: answers that are another variant's, before it is reported
 SHARE = 0.5  #: of the numbers of a sheet that are not right
 CLOSE = 0.002  #: of a value: rounding to three digits
 _NAMES = 3  #: students that are named

@@ -249,7 +249,7 @@ def _check_verdicts(path: Path, verdicts: Mapping[str, int]) -> None:
     for verdict in verdicts:
         if family_of(verdict) not in VERDICTS:
             raise BadInput(
-                "{path}: no verdict {verdict!r}; there is {verdicts}",
+                "{path}: no verdict {verdict!r}; available: {verdicts}",
                 path=path,
                 verdict=verdict[:40],
                 verdicts=", ".join(VERDICTS),

@@ -52,13 +52,13 @@ class SigningKey:
             private_key = _private_key(self.path.read_bytes())
         except (OSError, ValueError, TypeError) as fault:
             raise BadInput(
-                "{file} is no private key: {error}; 'coursework lti keys rotate' makes another",
+                "{file} is not a private key: {error}; 'coursework lti keys rotate' makes another",
                 file=self.path,
                 error=type(fault).__name__,
             ) from fault
         if not isinstance(private_key, rsa.RSAPrivateKey):
             raise BadInput(
-                "{file} is no RSA key, which LTI signs with; 'coursework lti keys rotate' makes one",
+                "{file} is not an RSA key, which LTI signs with; 'coursework lti keys rotate' makes one",
                 file=self.path,
             )
         return private_key

@@ -184,9 +184,9 @@ class MarkAnswers(Execute):
 
     folder = Unicode(
         "",
-        help="The folder of nbgrader's course, which has issued/ASSIGNMENT.json; where it runs unless told.",
+        help="The folder of nbgrader's course, which has issued/ASSIGNMENT.json; by default where it runs.",
     ).tag(config=True)
-    course = Unicode("", help="The course that the exercises are of; the built-in one unless told.").tag(
+    course = Unicode("", help="The course that the exercises are of; by default the built-in one.").tag(
         config=True
     )
 

@@ -58,7 +58,7 @@ def bound(
     seed
         Which book: each has variants of its own, and none that a class or self-study is given.
     chapters
-        The numbers of those that are wanted; all unless told.
+        The numbers of those that are wanted; by default all.
     solved
         Whether the solutions stand at its end.
     answers
@@ -83,7 +83,7 @@ def bound(
     for number in chapters:
         if number not in numbers:
             raise BadInput(
-                "no chapter {number}; there is {value}",
+                "no chapter {number}; available: {value}",
                 number=number,
                 value=", ".join(map(str, numbers)) or "none",
             )

@@ -149,9 +149,9 @@ def _fill(
         drill = _drill(variant, part, grade, back=back)
         kinds = drill.kinds if drill else ()
         if drill and all(posed[kind] < (1 if back else _MOST) for kind in kinds):
-            variant_told = f"{drill.exercise} {drill.seed} "
-            asked = variant_told + part.quantity
-            given = {variant_told + name for name in drill.values if name not in variant.used} - {asked}
+            variant_name = f"{drill.exercise} {drill.seed} "
+            asked = variant_name + part.quantity
+            given = {variant_name + name for name in drill.values if name not in variant.used} - {asked}
             same = (drill.text, f"{drill.exercise} {drill.answer}", asked, *(f"{one}?" for one in given))
             if not any(posed[one] for one in same):  # nor does the answer of one stand in another
                 posed.update((*same[:3], *given, f"{asked}?", *kinds))

@@ -42,7 +42,7 @@ def lesson_notebook(
         An open course, a lesson of it, a language.
     beside
         The lessons and exercises whose notebooks stand beside it: links lead to these alone. All of the
-        course unless told.
+        course by default.
 
     Raises
     ------

@@ -255,13 +255,13 @@ def _check_link(folder: Folder, link: TextLink, lang: str, position: str) -> Non
     known_names = folder.names if link.kind == "exercise" else folder.lessons
     if link.name not in known_names:
         raise BadCourse(
-            f"{position}: a link to the {link.kind} {link.name!r}, which there is "
-            f"not{nearest(link.name, known_names)}"
+            f"{position}: a link to the {link.kind} {link.name!r}, which does not exist"
+            f"{nearest(link.name, known_names)}"
         )
     if link.section and link.section not in (there := lesson_sections(folder, link.name, lang)):
         numbers = ", ".join(map(str, there)) or "none"
         raise BadCourse(
-            f"{position}: a link to section {link.section} of {link.name}, which it has not; there is "
+            f"{position}: a link to section {link.section} of {link.name}, which does not exist; available: "
             f"{numbers}"
         )
 

@@ -140,7 +140,7 @@ def _joints(folder: Folder, stated: Mapping[str, Any], lang: str) -> tuple[Piece
         for row in stated["joints"]
     )
     text = words(lang)["book"]
-    return (ProsePiece(text["joints_told"]), JointsPiece(tuple(text["joints_head"]), rows))
+    return (ProsePiece(text["joints_note"]), JointsPiece(tuple(text["joints_head"]), rows))
 
 
 _TABLES: Mapping[str, Callable[[Folder, Mapping[str, Any], str], tuple[Piece, ...]]] = {

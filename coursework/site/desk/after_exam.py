@@ -229,7 +229,7 @@ def _page(request: Request, now: ClassState, fields: Mapping[str, str], message:
     names: dict[str, Any] = {
         "exam": exam,
         "fields": fields,
-        "told": message,
+        "message": message,
         "preview": preview,
         "texts": texts,
         "written_so": written_so,

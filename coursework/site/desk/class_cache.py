@@ -181,7 +181,7 @@ def _has_come(at: Stamp, about: AssignmentOverview) -> tuple[Any, ...]:
 
 def _issued_at(at: Stamp, about: AssignmentOverview) -> tuple[Any, ...]:
     """Return the part of a stamp on which the issued variants depend."""
-    return at.dealt, about.columns, about.stated
+    return at.issued, about.columns, about.stated
 
 
 #: Cached properties that decisions do not change; of the groups, where no student has several attempts.

@@ -61,7 +61,7 @@ def news(request: Request) -> Response:
         return redirect(f"/desk/{now.about.id}")
     with request.site.store.reading() as connection:
         changed = students_since(connection, now.about.id, before)
-    # A step on no single student may change every row; rows under codes are not told by names.
+    # A step on no single student may change every row; rows under codes are not named.
     if "" in changed or now.about.stated.get("anonymous"):
         return redirect(f"/desk/{now.about.id}")
     return request.render(

@@ -20,7 +20,7 @@ from coursework.scanning.gathering import AnswerCard, Gathered, ScannedAnswer
 from coursework.scanning.page_reading import Papers
 from coursework.scanning.parts import Joins
 from coursework.scanning.queue import ScanQueue
-from coursework.scanning.scan import LEAST, as_told, papers_asked, together
+from coursework.scanning.scan import LEAST, as_typed, papers_asked, together
 from coursework.scanning.scan_store import (
     REFUSED,
     PageScan,
@@ -119,12 +119,12 @@ def class_scans(site: Site, number: int) -> ClassScans:
         ("papers that are scanned", number, _stamp(content)), lambda: Papers(site.course, content)
     )
     pages = with_copies(
-        as_told(
+        as_typed(
             Scanned(
                 ScannedFile(row.file, row.page.partition("-")[0], 0),
                 row.number,
                 row.page,
-                page_of(row.kept) or _GONE,
+                page_of(row.reading) or _GONE,
             ),
             papers,
             typed,

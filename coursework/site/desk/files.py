@@ -56,7 +56,7 @@ _DECISIONS = (
     "id",
     "withdraws",
 )
-_DELIVERIES = ("came", "source", "number", "late", "receipt")
+_SUBMISSIONS = ("received_at", "source", "number", "late", "receipt")
 
 
 # --------------------------------------------------------------------------- in
@@ -79,7 +79,7 @@ def files_page(
         now,
         "site/instructor/files",
         "files",
-        told=list(messages),
+        messages=list(messages),
         files=files[::-1][:50],
         rejected=now.rejected,
         platforms=PLATFORMS.values(),
@@ -271,11 +271,8 @@ def _origin(row: AnswerRow) -> dict[str, str]:
 
 def _submissions(request: Request, now: ClassState) -> bytes:
     with request.site.store.reading() as connection:
-        rows = [
-            {**submission._asdict(), "came": submission.received_at}
-            for submission in submissions_of(connection, now.about.id)
-        ]
-    return csv_file(({c: str(row[c]) for c in _DELIVERIES} for row in rows), _DELIVERIES)
+        rows = [submission._asdict() for submission in submissions_of(connection, now.about.id)]
+    return csv_file(({c: str(row[c]) for c in _SUBMISSIONS} for row in rows), _SUBMISSIONS)
 
 
 def _wide(request: Request, now: ClassState) -> bytes:
@@ -320,7 +317,7 @@ def table(request: Request) -> Response:
             if not (now.codes and member == "issued.json")
         }
         if now.is_whole and not now.codes:
-            files["deliveries.csv"] = _submissions(request, now)
+            files["submissions.csv"] = _submissions(request, now)
         return Download(zipped(files), "application/zip", f"{_safe(now.about.name)}.zip")
     if name == WIDE:
         return Download(_wide(request, now), "text/csv; charset=utf-8", name)

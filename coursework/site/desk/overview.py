@@ -53,7 +53,6 @@ def overview(request: Request) -> Response:
             else _tile(request, about)
             for about in assignments
         ],
-        told=request.query_params.get("told", ""),
         clock="" if leap is None else _clock_text(request, leap),
     )
 

@@ -64,7 +64,7 @@ def questions(request: Request) -> Response:
         "questions",
         listed=listed,
         sort=request.query_params.get("sort", ""),
-        told=class_statistics,
+        class_statistics=class_statistics,
     )
 
 

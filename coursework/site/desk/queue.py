@@ -229,7 +229,7 @@ def watch(request: Request) -> Response:
         return Response(status_code=204)
     decision = now.decisions.standing(group.first.sheet, group.first.mark)
     message = request.words["queue"]["taken"].format(decision.by, 1) if decision else ""
-    return request.render("site/instructor/_told", told=message)
+    return request.render("site/instructor/_message", message=message)
 
 
 def _after(before: Sequence[str], name: str, now: ClassState, filters: Filters) -> str:
@@ -265,7 +265,7 @@ def card_response(
         "count": len(waiting_items),
         "before": waiting_items[number - 1].id if waiting_items else "",
         "after": waiting_items[(number + 1) % len(waiting_items)].id if waiting_items else "",
-        "told": message,
+        "message": message,
         "counts": _counts(now),
         "done": _done(now),
         "since": now.stamp.decisions[1],

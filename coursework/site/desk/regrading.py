@@ -58,7 +58,7 @@ def regrade(request: Request) -> Response:
         now,
         "site/instructor/regrade",
         "regrade",
-        told=result,
+        result=result,
         done=done,
         is_new=course is not request.site.course,
         rows=[_row(request, now, change) for change in result.changes[:_MOST_ROWS]],

@@ -50,7 +50,7 @@ def _decided(request: Request, now: ClassState, row: UnplacedRow) -> str:
             drop_placing(connection, now.about.id, row.id)
         return str(texts["is_back"])
     if row.became is not None:
-        return str(texts["was_placed" if row.became.delivery_id else "was_aside"]).format(row.became.by)
+        return str(texts["was_placed" if row.became.submission_id else "was_aside"]).format(row.became.by)
     reason = request.form.text("reason").strip()[:_LONGEST]
     if asked_for == "aside":
         with request.site.store.begin() as connection:

@@ -62,7 +62,7 @@ def scans_page(request: Request, message: str = "") -> Response:
         now,
         "site/instructor/scans",
         "scans",
-        told=message,
+        message=message,
         job=job,
         scans=scans,
         is_marked=is_handed_over(request.site, now.about.id, scans),
@@ -221,7 +221,7 @@ def _card_response(
         "after": cards[(index + 1) % len(cards)].id if cards else "",
         "after_all": cards[(index + len(shown)) % len(cards)].id if cards else "",
         "scans": scans,
-        "told": message,
+        "message": message,
         "place_url": f"/desk/{now.about.id}/scans/queue",
         "papers": _papers(now, scans),
     }

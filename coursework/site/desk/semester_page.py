@@ -93,11 +93,11 @@ def semester_page(request: Request) -> Response:
 
 def _status(request: Request, titles: Mapping[str, str], unsettled: Mapping[str, Sequence[str]]) -> str:
     """Return what keeps a line from being final in the words of the page: ``absent: Midterm``."""
-    told, colon = request.words["semester"]["results"], words(request.lang)["sheet"]["colon"]
+    texts, colon = request.words["semester"]["results"], words(request.lang)["sheet"]["colon"]
     parts = (
-        f"{told[s]}{colon} {', '.join(map(titles.__getitem__, names))}" for s, names in unsettled.items()
+        f"{texts[s]}{colon} {', '.join(map(titles.__getitem__, names))}" for s, names in unsettled.items()
     )
-    return "; ".join(parts) or str(told[semester.FINAL])
+    return "; ".join(parts) or str(texts[semester.FINAL])
 
 
 def semester_file(request: Request) -> Response:

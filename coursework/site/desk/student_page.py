@@ -113,7 +113,7 @@ def student_page(request: Request) -> Response:
         "class",
         student=now.shown(student),
         result=result,
-        told=message,
+        message=message,
         mark=localise(mark_of(now.adjusted, result.counts, result.out_of), request.lang),
         columns=[] if now.codes else _columns(now, student),
         tries=[(moment(entry.received_at, request.lang), entry) for entry in tries],

@@ -232,7 +232,7 @@ class Middleware:
             *(localised(part, request.lang) if isinstance(part, Message) else part for part in why.parts)
         )
         try:
-            response = request.render("site/refused", why.status_code, told=message)
+            response = request.render("site/refused", why.status_code, message=message)
         except Exception as fault:
             LOG.error("the page for that: %s", location_of(fault))
             request.is_new = False

@@ -110,7 +110,7 @@ def assign_paper(site: Site, linked: LinkedAssignment, person: Any, launch: Laun
         if linked.number is not None:
             with site.store.reading() as connection:
                 before = issued_content(connection, linked.number, secret=True)
-                stood = stamp(connection, linked.number).dealt
+                stood = stamp(connection, linked.number).issued
                 mine = assignment.c.id == linked.number
                 table = connection.execute(select(assignment.c.asked).where(mine)).scalar()
         if table is None:
@@ -142,7 +142,7 @@ def _stands(connection: Connection, linked: LinkedAssignment, stood: Any) -> boo
         return number_of(connection, linked.link) is None
     mine = assignment.c.id == linked.number
     connection.execute(select(assignment.c.id).where(mine).with_for_update(key_share=True))
-    return bool(stamp(connection, linked.number).dealt == stood)
+    return bool(stamp(connection, linked.number).issued == stood)
 
 
 def _put(connection: Connection, linked: LinkedAssignment, content: Mapping[str, Any]) -> int:

@@ -412,8 +412,8 @@ class SiteHost:
             sheet for _, sheet in judged(site.course, paper.issued, sheets) if not isinstance(sheet, str)
         ]
         document = feedback_paper(site.course, paper.issued, paper.student, graded, request.lang)
-        told = SheetForm("", "", notes=notes, more=((sheet, texts["again"]), *links))
-        return HTMLResponse(self.pages.feedback(document, told))
+        shown = SheetForm("", "", notes=notes, more=((sheet, texts["again"]), *links))
+        return HTMLResponse(self.pages.feedback(document, shown))
 
     def _definition(self, linked: LinkedAssignment) -> Assignment:
         if linked.link:

@@ -155,15 +155,15 @@ def _found(path: Path, text: str, lang: str) -> dict[str, Any]:
         }
 
 
-def _row(told: Any, value: Any, lang: str) -> tuple[str, str]:
+def _row(label: Any, value: Any, lang: str) -> tuple[str, str]:
     """Return what a mechanism is in the reader's language: a quantity by its symbol, a number with the
     language's decimal mark."""
-    name = told.values.get("name", "")
+    name = label.values.get("name", "")
     types = words(lang, "site")["explore"]["types"]
     said = types.get(str(value)) or (
         localised(value, lang) if isinstance(value, Message) else localise(str(value), lang)
     )
-    return localised(told.replacing(name, f"${_symbol(name)}$") if name else told, lang), said
+    return localised(label.replacing(name, f"${_symbol(name)}$") if name else label, lang), said
 
 
 def _symbol(name: str) -> str:

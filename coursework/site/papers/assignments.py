@@ -312,9 +312,9 @@ def confirm(request: Request) -> Response:
             connection, site, assignment, paper, person_id, texts, int(number), request.received_at, source
         )
     if result.is_new:
-        submission.mark(site, result.delivery.id)
+        submission.mark(site, result.submission.id)
     again = "" if result.is_new else "?again=other" if result.differs else "?again=same"
-    return redirect(f"/assignments/{assignment.id}/receipts/{result.delivery.receipt}{again}")
+    return redirect(f"/assignments/{assignment.id}/receipts/{result.submission.receipt}{again}")
 
 
 def receipt(request: Request) -> Response:
@@ -331,7 +331,7 @@ def receipt(request: Request) -> Response:
         "site/student/assignment_receipt",
         state=state,
         row=row,
-        told=content,
+        content=content,
         lines=read_lines(paper, texts),
         came=time_element(row.received_at, request.lang, exact=True),
         again=again if again in ("same", "other") else "",
@@ -371,7 +371,7 @@ def feedback(request: Request) -> Response:
         "site/student/assignment_feedback",
         state=state,
         notes=notes,
-        delivery=chosen,
+        submission=chosen,
         drawings=drawings_in(request, state, paper, chosen),
         lessons={name: linked_lessons(request.site, name, request.lang) for name in paper.issued.exercises},
         **paper.template_names(document),

@@ -90,11 +90,11 @@ class PendingMarking(NamedTuple):
     ahead: int = 0  #: submissions that are marked before
 
 
-def pending_marking(request: Request, delivery: int) -> PendingMarking | None:
+def pending_marking(request: Request, submission: int) -> PendingMarking | None:
     """Return the message for a submission that waits for its marks; None if it is marked."""
     messages = request.words["assignments"]
     with request.site.store.reading() as connection:
-        job = job_of(connection, delivery)
+        job = job_of(connection, submission)
         if job is None or not request.site.has_worker:
             return None
         if job.fault:
@@ -125,7 +125,7 @@ def file(request: Request) -> Response:
 
 def verify(request: Request) -> Response:
     """Return the submission of a receipt, for staff: look up its code, and compare a digest."""
-    code, told_digest = (
+    code, content_digest = (
         request.query_params.get("code", "")[:40],
         request.query_params.get("digest", "").strip().lower()[:80],
     )
@@ -137,7 +137,7 @@ def verify(request: Request) -> Response:
                 row = None
             request.note(connection, "receipt looked up", code=code, found=row is not None)
             content = None if row is None else receipt_content(connection, row, row.assignment, row.student)
-    names: dict[str, Any] = {"code": code, "row": row, "told": content, "digest": told_digest}
+    names: dict[str, Any] = {"code": code, "row": row, "content": content, "digest": content_digest}
     if row is not None:
         names |= {"came": exact_text(row.received_at, request.lang), "zone": zone_name(row.received_at)}
         names["late"] = length_text(timedelta(seconds=row.late), request.lang) if row.late else ""

@@ -43,7 +43,7 @@ from coursework.database.submissions import (
     put_drawings,
     submissions_of,
 )
-from coursework.database.tables import dealt, delivery, draft, person, variant
+from coursework.database.tables import draft, issue, person, submission, variant
 from coursework.errors import CourseworkError
 from coursework.figures.student_drawing import is_drawn
 from coursework.gradebook.rows import AnswerRow, RowOrigin
@@ -59,7 +59,7 @@ ON_THE_PAGE, IN_A_FILE, AS_SAVED = "site", "site: a file", "site: as saved when 
 class SubmissionResult(NamedTuple):
     """Result of a submitted form."""
 
-    delivery: Submission
+    submission: Submission
     is_new: bool
     differs: bool = False  #: its answers differ from those submitted under its number
 
@@ -93,7 +93,7 @@ def submit(
         (fresh,) = student_assignments(connection, person_id, assignment.id)
         result = store_submission(connection, site, fresh, paper, person_id, texts, number, at, source)
     if result.is_new:
-        mark(site, result.delivery.id)
+        mark(site, result.submission.id)
     return result
 
 
@@ -124,14 +124,14 @@ def store_submission(
     if done and holds(connection, done[-1], paper, texts):
         return SubmissionResult(done[-1], False)  # equal answers cost no attempt
     now = _check(connection, assignment, person_id, at, site.clock(), done)
-    submission = _deliver(connection, assignment, paper, person_id, texts, now, source)
-    put_job(connection, MARK, assignment.id, site.clock(), delivery=submission.id)
-    return SubmissionResult(submission, True)
+    stored = _submit(connection, assignment, paper, person_id, texts, now, source)
+    put_job(connection, MARK, assignment.id, site.clock(), submission=stored.id)
+    return SubmissionResult(stored, True)
 
 
-def holds(connection: Connection, submission: Submission, paper: StudentPaper, texts: Texts) -> bool:
+def holds(connection: Connection, stored: Submission, paper: StudentPaper, texts: Texts) -> bool:
     """Return True if a submission consists of these texts, by box."""
-    return answers_of(connection, submission.id) == content_of(paper, texts)
+    return answers_of(connection, stored.id) == content_of(paper, texts)
 
 
 def _takes(assignment: StudentAssignment, arrived: datetime, clock: datetime) -> bool:
@@ -170,7 +170,7 @@ def _check(
     return now
 
 
-def _deliver(
+def _submit(
     connection: Connection,
     assignment: StudentAssignment,
     paper: StudentPaper,
@@ -182,7 +182,7 @@ def _deliver(
     number = next_number(connection, assignment.id, person_id, paper.student)
     late = assignment.own_publication.late_seconds(received_at)
     rows = rows_for(paper, texts, number, received_at, source)
-    submission = insert_submission(
+    stored = insert_submission(
         connection,
         assignment.id,
         rows,
@@ -192,24 +192,24 @@ def _deliver(
         number=number,
         late=late,
     )
-    if submission.is_new and paper.drawn:
+    if stored.is_new and paper.drawn:
         boxes = drafts(connection, person_id, sheet_of(assignment, paper))
         texts = {exercise: boxes[name].text for name, exercise in paper.drawn.items() if name in boxes}
-        put_drawings(connection, submission, {name: text for name, text in texts.items() if is_drawn(text)})
-    return submission
+        put_drawings(connection, stored, {name: text for name, text in texts.items() if is_drawn(text)})
+    return stored
 
 
-def mark(site: Site, delivery_id: int, *, at_once: bool = False) -> None:
+def mark(site: Site, submission_id: int, *, at_once: bool = False) -> None:
     """Mark a submission, unless a worker does; even then if its marks are wanted ``at_once``. The submission
     is already stored: after a fault, it is marked later."""
     if site.has_worker and not at_once:
         return
     try:
-        mark_submission(site.course, site.store, delivery_id)
+        mark_submission(site.course, site.store, submission_id)
         with site.store.begin() as connection:
-            drop_jobs(connection, delivery_id)
+            drop_jobs(connection, submission_id)
     except Exception as fault:  # the submission is confirmed even if marking fails
-        LOG.error("delivery %d is not marked yet: %s", delivery_id, type(fault).__name__)
+        LOG.error("submission %d is not marked yet: %s", submission_id, type(fault).__name__)
 
 
 def rows_for(
@@ -314,13 +314,13 @@ def close_passed(
 
 def unsubmitted_persons(connection: Connection, number: int) -> list[int]:
     """Return the people with saved answers for an assignment and without a submission."""
-    theirs = select(dealt.c.person_id).join(variant).where(variant.c.assignment_id == number)
+    theirs = select(issue.c.person_id).join(variant).where(variant.c.assignment_id == number)
     wrote = select(draft.c.person_id).where(draft.c.sheet.like(f"assignment/{number}%"), draft.c.text != "")
-    done = select(delivery.c.person_id).where(
-        delivery.c.assignment_id == number, delivery.c.person_id.is_not(None)
+    done = select(submission.c.person_id).where(
+        submission.c.assignment_id == number, submission.c.person_id.is_not(None)
     )
-    query = theirs.where(dealt.c.person_id.in_(wrote), dealt.c.person_id.not_in(done)).distinct()
-    return list(connection.execute(query.order_by(dealt.c.person_id)).scalars())
+    query = theirs.where(issue.c.person_id.in_(wrote), issue.c.person_id.not_in(done)).distinct()
+    return list(connection.execute(query.order_by(issue.c.person_id)).scalars())
 
 
 def rescue(site: Site, number: int, person_id: int, at: datetime) -> Submission | None:
@@ -331,10 +331,10 @@ def rescue(site: Site, number: int, person_id: int, at: datetime) -> Submission 
     """
     with site.store.begin() as connection:
         lock_person(connection, person_id)
-        submission = _saved(site, connection, number, person_id, at)
-        if submission is not None:
-            put_job(connection, MARK, number, site.clock(), delivery=submission.id)
-        return submission
+        stored = _saved(site, connection, number, person_id, at)
+        if stored is not None:
+            put_job(connection, MARK, number, site.clock(), submission=stored.id)
+        return stored
 
 
 def _saved(
@@ -359,7 +359,7 @@ def _saved(
     of_it = draft.c.person_id == person_id, draft.c.sheet == sheet_of(assignment, paper)
     changed = connection.execute(select(func.max(draft.c.changed)).where(*of_it)).scalar()
     ends = assignment.own_publication.ends or at
-    return _deliver(
+    return _submit(
         connection, assignment, paper, person_id, texts, min(_as_datetime(changed, ends), ends), AS_SAVED
     )
 
@@ -382,15 +382,15 @@ def submission_of_receipt(connection: Connection, code: str, number: int | None 
 
     query = (
         select(
-            delivery,
-            delivery.c.came.label("received_at"),
+            submission,
+            submission.c.received_at,
             assignment.c.name.label("assignment"),
             person.c.name.label("student"),
         )
-        .join(assignment, assignment.c.id == delivery.c.assignment_id)
-        .join(person, person.c.id == delivery.c.person_id)
-        .where(delivery.c.receipt == code.strip().upper(), delivery.c.receipt != "")
+        .join(assignment, assignment.c.id == submission.c.assignment_id)
+        .join(person, person.c.id == submission.c.person_id)
+        .where(submission.c.receipt == code.strip().upper(), submission.c.receipt != "")
     )
     if number is not None:
-        query = query.where(delivery.c.assignment_id == number)
+        query = query.where(submission.c.assignment_id == number)
     return connection.execute(query).first()

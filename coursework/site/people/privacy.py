@@ -93,7 +93,7 @@ def _withheld(tables: Mapping[str, Rows], release_of: Callable[[int], Release]) 
     """Return the tables without the content that is not released yet."""
     markings = {row["id"]: row["assignment_id"] for row in tables["marking"]}
     seen = {
-        "dealt": [row for row in tables["dealt"] if release_of(row["assignment_id"]).paper],
+        "issue": [row for row in tables["issue"] if release_of(row["assignment_id"]).paper],
         "marking": [row for row in tables["marking"] if release_of(row["assignment_id"]).marks],
         "mark": [row for row in tables["mark"] if release_of(markings[row["marking_id"]]).marks],
         "decision": [row for row in tables["decision"] if release_of(row["assignment_id"]).marks],

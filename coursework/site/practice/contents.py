@@ -19,10 +19,10 @@ from coursework.markup import markdown
 from coursework.selfstudy.mastery import (
     Advice,
     ExerciseProgress,
+    advice_text,
+    date_text,
     next_step,
     standings,
-    told_advice,
-    told_date,
 )
 from coursework.selfstudy.progress import Progress
 from coursework.selfstudy.workbook.binding import chapters_of
@@ -164,7 +164,7 @@ def _entry(request: Request, new: ExerciseEntry, stand: ExerciseProgress | None)
     if stand.due is not None and stand.due <= request.received_at.date():
         return ExerciseEntry(name, title, "due", texts["due"].format(**counts), is_right)
     if stand.due is not None:
-        day = told_date(stand.due, request.lang)
+        day = date_text(stand.due, request.lang)
         return ExerciseEntry(name, title, "again", texts["again"].format(**counts, day=day), is_right)
     state = "done" if is_right else "begun"
     return ExerciseEntry(name, title, state, texts[state].format(**counts), is_right)
@@ -194,7 +194,7 @@ def next_of(request: Request, progress: Progress, after: str = "") -> NextStep |
     advice: Advice | None = next_step(site.course, progress, request.received_at.date(), order)
     if advice is None:
         return None
-    text = told_advice(request.site.course, advice, request.lang, exercise_title)
+    text = advice_text(request.site.course, advice, request.lang, exercise_title)
     return NextStep(
         advice.exercise,
         Markup(markdown.html_inline(text, request.lang)),

@@ -9,7 +9,7 @@ from coursework.database.permissions import Permission
 from coursework.database.progress import PersonProgress
 from coursework.errors import BadInput
 from coursework.markup import markdown
-from coursework.selfstudy.mastery import told_skills
+from coursework.selfstudy.mastery import skills_text
 from coursework.selfstudy.progress import FILE, LaterVersion, TooLong, read_brought
 from coursework.site.frame.budgets import PROGRESS_FILE, read_apart
 from coursework.site.frame.requests import Request, Route
@@ -24,7 +24,7 @@ def progress(request: Request) -> Response:
     """Return the page of the person's progress; a form uploads a file, whose entries are added."""
     store = PersonProgress(request.site.store, request.user.id, request.site.clock)
     brought = _brought(request, store) if request.is_post else None
-    skills = told_skills(request.site.course, store.progress, request.lang, exercise_title)
+    skills = skills_text(request.site.course, store.progress, request.lang, exercise_title)
     begun = [c for c in contents(request, store.progress) if c.begun]
     return request.render(
         "site/student/progress",

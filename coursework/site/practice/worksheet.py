@@ -23,7 +23,7 @@ from coursework.markup import markdown
 from coursework.rendering import views
 from coursework.rendering.feedback import verdict_word
 from coursework.rendering.surface import kind_of_surface
-from coursework.scenes.animation import told_by_motion
+from coursework.scenes.animation import shown_by_motion
 from coursework.selfstudy import hints, predictions
 from coursework.selfstudy.attempt import (
     CheckedAnswers,
@@ -410,7 +410,7 @@ class Worksheet:
     @cached_property
     def motion_tells(self) -> tuple[str, ...]:
         """Names of the questions whose answer the motion tells."""
-        return told_by_motion(self.variant)
+        return shown_by_motion(self.variant)
 
     @property
     def motion_waits(self) -> list[tuple[str, int]]:

@@ -38,7 +38,7 @@ from coursework.database.publication import (
     starts,
     student_assignments,
 )
-from coursework.database.tables import audit, dealt, delivery, variant
+from coursework.database.tables import audit, issue, submission, variant
 from coursework.errors import BadInput, CourseworkError
 from coursework.issuing.assignment import (
     MOST_VERSIONS,
@@ -306,20 +306,20 @@ def holders(connection: Connection, number: int) -> list[PaperHolder]:
     """Return the students with a paper, in the order of issue."""
     query = (
         select(
-            dealt.c.person_id,
-            dealt.c.student,
+            issue.c.person_id,
+            issue.c.student,
             func.max(variant.c.letter),
-            func.max(dealt.c.sitting),
-            func.max(dealt.c.lang),
-            func.min(dealt.c.place),
+            func.max(issue.c.sitting),
+            func.max(issue.c.lang),
+            func.min(issue.c.place),
         )
-        .select_from(dealt.join(variant))
-        .where(variant.c.assignment_id == number, dealt.c.person_id.is_not(None))
-        .group_by(dealt.c.person_id, dealt.c.student)
-        .order_by(func.min(dealt.c.place))
+        .select_from(issue.join(variant))
+        .where(variant.c.assignment_id == number, issue.c.person_id.is_not(None))
+        .group_by(issue.c.person_id, issue.c.student)
+        .order_by(func.min(issue.c.place))
     )
-    submitted = select(delivery.c.person_id, func.count()).where(delivery.c.assignment_id == number)
-    done: dict[int, int] = dict(connection.execute(submitted.group_by(delivery.c.person_id)).all())
+    submitted = select(submission.c.person_id, func.count()).where(submission.c.assignment_id == number)
+    done: dict[int, int] = dict(connection.execute(submitted.group_by(submission.c.person_id)).all())
     return [
         PaperHolder(row[0], row[1], row[2], row[3], row[4], done.get(row[0], 0))
         for row in connection.execute(query)
@@ -459,15 +459,15 @@ def extend_assignment(request: Request) -> Response:
 
 def add_late(request: Request) -> Response:
     """Assign variants to the new students of a longer roster; all other papers remain as they are."""
-    return _deal_more(request, new_assignment.students_of(request), (), "late ones added")
+    return _issue_more(request, new_assignment.students_of(request), (), "late ones added")
 
 
 def make_up(request: Request) -> Response:
     """Assign another variant to one person, for a second sitting."""
-    return _deal_more(request, [], (request.form.text("student"),), "make-up dealt")
+    return _issue_more(request, [], (request.form.text("student"),), "make-up dealt")
 
 
-def _deal_more(request: Request, students: Sequence[Student], names: Sequence[str], event: str) -> Response:
+def _issue_more(request: Request, students: Sequence[Student], names: Sequence[str], event: str) -> Response:
     with request.site.store.reading() as connection:
         listed = assignment_here(request, connection)
         content = issued_content(connection, listed.id, secret=True)

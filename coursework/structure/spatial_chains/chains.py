@@ -66,7 +66,7 @@ class _Loops:
         lost = [body for body in range(self.n + 1) if body not in paths]
         if lost:
             raise WrongValue(
-                "bodies {lost} are not linked to the frame; number the bodies from 0 without holes", lost=lost
+                "bodies {lost} are not linked to the frame; number the bodies from 0 without a gap", lost=lost
             )
         return [paths[body] for body in range(self.n + 1)]
 
@@ -155,7 +155,12 @@ class _Loops:
         held = [self._paths[body] for body in (self.inputs, self.outputs) if body is not None]
         if not held:
             raise WrongValue("internal mobility needs an input and an output body")
-        return self.Nc - rank_of(self._system([*self.loops, *held]), "the held loop equations").value
+        return (
+            self.Nc
+            - rank_of(
+                self._system([*self.loops, *held]), "the loop equations with input and output locked"
+            ).value
+        )
 
     @property
     def m_useful(self) -> int:

@@ -182,7 +182,9 @@ def _four(twists: _Space, wrenches: _Space) -> Equivalent:
             return Equivalent("annular", axis=_along(along), point=wrenches.place(centre))
     elif len(forces) == 1:
         force, moment, couple = forces[0, :3], forces[0, 3:], couples[0] / np.linalg.norm(couples[0])
-        square = is_zero(float(force @ couple / np.linalg.norm(force)), "the couple is square to the force")
+        square = is_zero(
+            float(force @ couple / np.linalg.norm(force)), "the couple is perpendicular to the force"
+        )
         if square and is_zero(float(force @ moment / (force @ force)), "the action is a force"):
             return Equivalent(
                 "line_contact",

@@ -112,7 +112,7 @@ def test_many_variants_at_once_have_the_crossings_that_each_has_alone():
 def test_the_middle_of_what_is_told_of_a_crossing_is_seldom_right():
     right = 0
     for variant in EXERCISE.variants(range(40)):
-        told = variant.exercise.spec.told(variant.given)
+        told = variant.exercise.spec.statement_values(variant.given)
         given = {f"theta_{name}": sum(told[name]) / 2 for name in ("rise", "fall")}
         right += sum(variant.grade(given)[i].verdict == "correct" for i in given)
     assert right < 0.15 * 80
@@ -121,7 +121,7 @@ def test_the_middle_of_what_is_told_of_a_crossing_is_seldom_right():
 @every_seed
 def test_the_statement_tells_bounds_of_each_crossing(seed):
     variant = EXERCISE.variant(seed)
-    told, found = variant.exercise.spec.told(variant.given), variant.solution()
+    told, found = variant.exercise.spec.statement_values(variant.given), variant.solution()
     for name, quantity in (("rise", "theta_rise"), ("fall", "theta_fall")):
         low, high = told[name]
         assert low + 0.1 < found[quantity] < high - 0.1

@@ -266,7 +266,7 @@ def test_an_answer_of_any_length_is_read_and_no_setting_is_left_changed(folder):
             "line 2: points and out_of must be numbers up to 1e",
         ),
         (lambda text: text.replace("correct,1,1", "correct,1,-1"), "out of -1 points"),
-        (lambda text: text.replace("correct,", "splendid,"), "no verdict 'splendid'; there is correct"),
+        (lambda text: text.replace("correct,", "splendid,"), "no verdict 'splendid'; available: correct"),
         (lambda text: text + "a,e\r\n", "line 3: 2 cells, too few"),
         (lambda text: "", "found nothing"),
         (lambda text: "é" + text, "needs the columns student"),

@@ -12,7 +12,7 @@ from cryptography.hazmat.primitives import serialization
 from lti_platform import CLIENT, DEEP, LTI, MEMBER, SITE, TOOL, field, seal
 from tables import each_row
 
-from coursework.database.tables import delivery, lti_session
+from coursework.database.tables import lti_session, submission
 from coursework.language.words import words
 from coursework.platforms.lti.key_sets import AGAIN_SECONDS, CACHE_SECONDS
 from coursework.platforms.lti.login import session_cookie
@@ -385,7 +385,7 @@ def test_a_form_of_another_site_is_refused(tool, visitor):
     assert refused(visitor.browser.post(path, data={**fields, "_seal": "é"}), "form", 403)
     other, _ = tool.visitor().enter(sub="bob")
     assert refused(visitor.browser.post(path, data={**fields, "_seal": seal(other.text)}), "form", 403)
-    assert not tool.one(delivery.c.id)
+    assert not tool.one(submission.c.id)
     assert visitor.browser.post(path, data=fields, headers={"Origin": TOOL}).status_code == 303
 
 

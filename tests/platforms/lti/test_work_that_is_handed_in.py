@@ -33,10 +33,10 @@ from coursework.database.tables import (
     METADATA,
     answer,
     assignment,
-    delivery,
     identity,
     lti_launch,
     mark,
+    submission,
     variant,
 )
 from coursework.issuing.roster import read_roster
@@ -167,15 +167,15 @@ def test_what_cannot_be_read_uses_no_try(tool, visitor):
     assert SAID["unread"] in back.text
     assert 'value="hello?"' in back.text
     assert "<b>" not in back.text.split("<main>")[1].replace("<b>9</b>", "")
-    assert not tool.one(delivery.c.id)
+    assert not tool.one(submission.c.id)
     verdicts = words("en")["feedback"]["verdicts"]
     assert f">{verdicts['correct']}<" not in back.text  # and tells nothing of the others
     assert SAID["empty"] in visitor.hand_in(path, page, {"e1-rA": "  "}).text
     assert visitor.hand_in(path, page, {"points": "9"}).status_code == 400
     assert visitor.hand_in(path, page, {"e1-rA": "1"}, _number="7" * 9).status_code == 400
-    assert not tool.one(delivery.c.id)
+    assert not tool.one(submission.c.id)
     assert visitor.hand_in(path, back, right_answers(tool, page.text)).status_code == 303
-    assert len(tool.one(delivery.c.id)) == 1
+    assert len(tool.one(submission.c.id)) == 1
 
 
 def test_tries_are_limited_where_the_link_says_so(tool, visitor):
@@ -219,14 +219,14 @@ def test_answers_of_a_link_are_in_what_a_person_is_given_and_are_erased(tool, vi
     ((ada,),) = tool.one(identity.c.person_id)[:1]
     kept = kept_of(tool, ada)
     assert [row["answer"] for row in kept["answer"] if row["part"] == "rA"] == ["0.123456 m"]
-    assert {"delivery", "marking", "mark", "dealt", "identity", "lti_launch", "lti_session"} <= {
+    assert {"submission", "marking", "mark", "issue", "identity", "lti_launch", "lti_session"} <= {
         k for k in kept if kept[k]
     }
     assert kept["lti_launch"][0]["maximum"] == 9
     erased = tool.browser(ADA).fill(f"/desk/people/{ada}/erase", {"name": "Unmistakable"})
     assert erased.status_code == 303
     assert visitor.browser.get(path).status_code == 403
-    assert len(tool.one(delivery.c.id)) == len(tool.one(lti_launch.c.id)) == 1
+    assert len(tool.one(submission.c.id)) == len(tool.one(lti_launch.c.id)) == 1
     for table in METADATA.tables.values():
         told = str(tool.one(*table.c))
         assert "Unmistakable" not in told, table.name
@@ -421,7 +421,7 @@ def test_a_teacher_tries_the_sheet_and_nothing_is_kept_of_it(tool):
     assert SAID["preview"].split(".")[0] in done.text
     assert words("en")["feedback"]["right"] not in done.text
     assert teacher.hand_in(path, sheet, {"e1-rA": "1 m"}).status_code == 404
-    for table in (delivery, answer, mark, identity, lti_launch):
+    for table in (submission, answer, mark, identity, lti_launch):
         assert not tool.one(table.c.id), table.name
     assert len(tool.one(assignment.c.id)) == 1
     _, path = teacher.enter(sub="emmy", roles=TEACHER, custom={"assignment": "week3"})

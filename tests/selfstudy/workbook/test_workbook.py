@@ -408,12 +408,12 @@ def test_a_book_prints_no_variant_that_a_class_is_given(small):
         (
             "lesson:rods#1",
             "lesson:rods#7",
-            "line 47: a link to section 7 of rods, which it has not; there is 1, 2",
+            "line 47: a link to section 7 of rods, which does not exist; available: 1, 2",
         ),
         (
             "lesson:rods#1",
             "lesson:rod",
-            "line 47: a link to the lesson 'rod', which there is not; did you mean 'rods'",
+            "line 47: a link to the lesson 'rod', which does not exist; did you mean 'rods'",
         ),
         ("exercise:crank_pin)", "exercise:crank_pim)", "line 47: a link to the exercise 'crank_pim'"),
         (
@@ -597,7 +597,7 @@ def test_the_check_goes_on_where_a_language_is_missing(folder, capsys):
 def test_a_book_is_in_one_language_that_there_is(folder, command, capsys):
     out = folder / "out"
     assert run(["--course", str(folder), command, "--lang", "en,fr", "--out", str(out)]) == 2
-    assert "no language 'en,fr'; there is en, fr" in capsys.readouterr().err
+    assert "no language 'en,fr'; available: en, fr" in capsys.readouterr().err
     assert not out.exists()
 
 
@@ -614,7 +614,7 @@ def test_the_command_writes_all_and_says_what_to_open(folder, tmp_path, capsys):
     assert "workbook.en.pdf, pages/index.html, notebooks/" in capsys.readouterr().out
     assert (out / "pages/solutions/crank_pin.html").exists()
     assert run(["--course", str(folder), "workbook", "--chapters", "4", "--out", str(tmp_path / "b")]) == 2
-    assert "no chapter 4; there is 1" in capsys.readouterr().err
+    assert "no chapter 4; available: 1" in capsys.readouterr().err
 
 
 def test_chapters_and_formats_that_are_none_are_refused(small):
