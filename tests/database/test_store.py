@@ -6,9 +6,13 @@ import pytest
 from alembic.autogenerate import compare_metadata
 from alembic.runtime.migration import MigrationContext
 from sqlalchemy import Table, insert, inspect, select, update
+from stored_class import ANA, content, put, rows
 from tables import each_row
 
+import coursework
+from coursework.database.assignments import issued_content as content_of
 from coursework.database.store import Store
+from coursework.database.submissions import rows_of
 from coursework.database.tables import METADATA, setting
 from coursework.errors import BadInput
 
@@ -39,6 +43,38 @@ def test_a_database_of_an_earlier_version_gets_what_it_lacks_and_keeps_its_rows(
     assert differences(again) == []
     with again.reading() as connection:
         assert connection.execute(select(setting.c.value)).scalar() == "blue"
+    again.close()
+
+
+def test_a_database_with_earlier_names_is_renamed_and_keeps_its_rows(store, url, small_course):
+    """Submissions, papers and scans by the names that they had before version 0011."""
+
+    def stored(opened):
+        with opened.reading() as connection:
+            tables = [
+                connection.execute(select(METADATA.tables[name])).all() for name in ("issue", "submission")
+            ]
+            return tables, list(rows_of(connection, number)), content_of(connection, number)
+
+    course = coursework.open_course(small_course)
+    number = put(store, content(course), rows(course, ANA, 0))
+    before = stored(store)
+    assert all(before)
+    with store.begin() as connection:
+        for statement in (
+            "ALTER TABLE submission RENAME COLUMN received_at TO came",
+            "ALTER TABLE scanned RENAME COLUMN reading TO kept",
+            "ALTER TABLE answer RENAME COLUMN submission_id TO delivery_id",
+            "DROP INDEX ix_answer_submission_id",
+            "CREATE INDEX ix_answer_delivery_id ON answer (delivery_id)",
+            "ALTER TABLE submission RENAME TO delivery",
+            "ALTER TABLE issue RENAME TO dealt",
+            "UPDATE alembic_version SET version_num = '0010'",
+        ):
+            connection.exec_driver_sql(statement)
+    again = Store(url)
+    assert differences(again) == []
+    assert stored(again) == before
     again.close()
 
 
