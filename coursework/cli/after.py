@@ -60,6 +60,7 @@ def _several(name: str, metavar: str, **more: Any) -> Callable[[Any], Any]:
 @click.option(
     "--marks", type=FOLDER, help="Folder of marks that grade wrote; by default marks/ beside issued.json."
 )
+@click.option("--read", type=FOLDER, help="Folder that scan wrote; by default read/ beside issued.json.")
 @db_option
 @assignment_option
 @_several(
@@ -122,6 +123,7 @@ def after(
     file: Path,
     issued: Path | None,
     marks: Path | None,
+    read: Path | None,
     db: str | None,
     assignment: str,
     undo: str | None,
@@ -149,11 +151,13 @@ def after(
 
     course = opened(context)
     stated = read_assignment(file, course)
-    exam, confirm = (
-        _stored(context, course, db, assignment or stated.name)
-        if db is not None
-        else _in_folder(context, course, file, stated, issued, marks)
-    )
+    incomplete: Sequence[str] = ()
+    if db is not None:
+        exam, confirm = _stored(context, course, db, assignment or stated.name)
+    else:
+        issued = issued or _issued_of(file, stated)
+        exam, confirm = _in_folder(context, course, issued, marks)
+        incomplete = _incomplete_papers(read or issued.parent / "read")
     by = by or getpass.getuser()
     changed = restated_of(stated, exam)
     steps = [step._replace(reason=why, by=by) for step in _steps(exam, asked)]
@@ -174,12 +178,12 @@ def after(
         if feedback:
             confirm([], True)
         if as_json:
-            print_json(_as_json(exam))
+            print_json(_as_json(exam) | {"incomplete_papers": list(incomplete)})
         elif cards:
             _tell_cards(exam)
         else:
-            _tell(exam, changed.steps, changed.notes)
-        return FOUND if exam.cards or exam.rejected or changed.steps else DONE
+            _tell(exam, incomplete, changed.steps, changed.notes)
+        return FOUND if exam.cards or exam.rejected or incomplete or changed.steps else DONE
     preview = exam.preview(steps)
     if as_json:
         print_json(_preview_json(preview))
@@ -197,27 +201,37 @@ def after(
 # ------------------------------------------------------------------------ where
 
 
+def _issued_of(file: Path, stated: Assignment) -> Path:
+    """Return the ``issued.json`` of the file of an assignment."""
+    out = stated.options.get("out")
+    places = [file.parent / str(out)] if out else [file.with_suffix(""), Path(file.stem)]
+    found = [place / "issued.json" for place in places if (place / "issued.json").is_file()]
+    if not found:
+        raise BadInput(
+            "no issued.json in {places}: name that of the build, --issued",
+            places=", ".join(map(str, dict.fromkeys(places))),
+        )
+    return found[0]
+
+
+def _incomplete_papers(read: Path) -> Sequence[str]:
+    """Return the students of papers that lack a page in the folder of a scan; nobody if there is none."""
+    if not read.is_dir():
+        return ()
+    from coursework.scanning.scan import incomplete_papers
+
+    return incomplete_papers(read)
+
+
 def _in_folder(
     context: click.Context,
     course: Course,
-    file: Path,
-    stated: Assignment,
-    issued: Path | None,
+    issued: Path,
     marks: Path | None,
 ) -> tuple[Exam, Confirm]:
     """Return the exam in a folder of marks, and what keeps decisions on it."""
     from coursework.gradebook.after_files import MarkedFolder
 
-    if issued is None:
-        out = stated.options.get("out")
-        places = [file.parent / str(out)] if out else [file.with_suffix(""), Path(file.stem)]
-        found = [place / "issued.json" for place in places if (place / "issued.json").is_file()]
-        if not found:
-            raise BadInput(
-                "no issued.json in {places}: name that of the build, --issued",
-                places=", ".join(map(str, dict.fromkeys(places))),
-            )
-        issued = found[0]
     folder = MarkedFolder(course, issued, marks or issued.parent / "marks")
 
     def confirm(steps: Sequence[Decision], feedback: bool) -> None:
@@ -336,7 +350,9 @@ def _value(option: str, text: str) -> float:
 # ------------------------------------------------------------------------ lines
 
 
-def _tell(exam: Exam, restated: Sequence[Decision], notes: Sequence[Message]) -> None:
+def _tell(
+    exam: Exam, incomplete: Sequence[str], restated: Sequence[Decision], notes: Sequence[Message]
+) -> None:
     """Print what is left, the questions, and the steps."""
     from coursework.gradebook import after_words as said
 
@@ -365,7 +381,9 @@ def _tell(exam: Exam, restated: Sequence[Decision], notes: Sequence[Message]) ->
         reasons = Counter(localised(row.reason) for row in exam.rejected)
         for reason, count in reasons.most_common(_REASONS):
             click.echo("    " + one_line(texts["rejected_why"].format(reason, count)))
-    if not exam.cards and not exam.rejected:
+    if incomplete:
+        click.echo(f"  {texts['incomplete'].format(len(incomplete))}{colon} {_named(list(incomplete))}")
+    if not exam.cards and not exam.rejected and not incomplete:
         click.echo("  " + texts["nothing_left"])
     if exam.provisional:
         click.echo(f"  {texts['provisional']}{colon} {_named(list(exam.provisional))}")

@@ -62,12 +62,13 @@ from coursework.scanning.scan_store import (
     with_copies,
 )
 from coursework.scanning.sources import Scan, scans
-from coursework.scanning.typed import PAGE, Typed, merged, read_typed, typed_file
+from coursework.scanning.typed import PAGE, Typed, merged, read_rows, read_typed, typed_file
 from coursework.system.processes import processes, workers
 from coursework.system.tables import SPREADSHEETS, Spreadsheet
 from coursework.system.writing import Progress, TableFile, Tables, write_whole, writing
 
 TYPED = "typed.csv"
+_MISSING = "missing.csv"
 LEAST = CONFIDENT  #: by default, the confidence below which nothing is guessed
 ANSWER_COLUMNS = (*COLUMNS, "source")
 PAGE_COLUMNS = (
@@ -84,6 +85,7 @@ PAGE_COLUMNS = (
     "picture",
 )
 REJECTED_COLUMNS = ("file", "page", "reason", "picture")
+_ALL = "all"  #: the missing pages of a paper of which nothing was scanned
 MISSING_COLUMNS = ("student", "paper", "pages", "scanned", "missing")
 _CHUNK = 4  #: pages that a process is sent at once
 _WORTH_PROCESSES = 8  #: pages; fewer are read before a process has started
@@ -299,7 +301,7 @@ def write_read(
     with Tables(out, spreadsheet) as tables:
         _write_answers(tables.open("answers.csv", ANSWER_COLUMNS), combined, pages)
         _write_pages(tables, book, combined, printed, pages)
-        _write_missing(tables.open("missing.csv", MISSING_COLUMNS), book, combined, papers, printed)
+        _write_missing(tables.open(_MISSING, MISSING_COLUMNS), book, combined, papers, printed)
         queue = ScanQueue(papers, printed, combined, Joins(papers, printed), out)
         write_queue(queue, _cut)
         tables.commit()
@@ -440,8 +442,22 @@ def _write_missing(
     }
     for (student, *_), code in reversed(absent.items()):
         if student:
-            table.write({"student": student, "paper": code, "pages": "", "scanned": 0, "missing": "all"})
+            table.write({"student": student, "paper": code, "pages": "", "scanned": 0, "missing": _ALL})
             book.absent += 1
+
+
+def incomplete_papers(out: Path) -> list[str]:
+    """Return the students of papers that were scanned without one of their pages, as the folder of a scan
+    states them.
+
+    Raises
+    ------
+    BadInput
+        The file cannot be read, or is not as ``scan`` wrote it.
+    """
+    path = out / _MISSING
+    rows = read_rows(path, MISSING_COLUMNS, MISSING_COLUMNS) if path.exists() else ()
+    return [row["student"] for row in rows if row["missing"] != _ALL]
 
 
 def _sheet(paper: AnswerPaper) -> tuple[str, int, tuple[tuple[str, int], ...]]:

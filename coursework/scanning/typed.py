@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import csv
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
@@ -44,6 +44,26 @@ def read_typed(path: Path) -> list[Typed]:
     BadInput
         It cannot be read, or lacks a column.
     """
+    return [_typed(row) for row in read_rows(path, _NEEDED, COLUMNS)]
+
+
+def read_rows(path: Path, needed: Sequence[str], known: Sequence[str]) -> list[dict[str, str]]:
+    """Return the rows of a table of a scan's folder, by the names of its columns.
+
+    Parameters
+    ----------
+    path
+        The file, a CSV.
+    needed
+        Columns that it must have.
+    known
+        Columns that may not stand there twice.
+
+    Raises
+    ------
+    BadInput
+        It cannot be read, or lacks a column.
+    """
     try:
         check_size(str(path), path.stat().st_size, MOST_TABLE_BYTES)
         with open_csv(path) as file:
@@ -55,23 +75,26 @@ def read_typed(path: Path) -> list[Typed]:
     rows = csv.reader(lines, delimiter=delimiter_of(lines[0]))
     try:
         header = [cell.strip().casefold() for cell in next(rows, [])]
-        if missing := [c for c in _NEEDED if c not in header]:
+        if missing := [c for c in needed if c not in header]:
             raise BadInput(
                 "{path}: the header must name {needed}; {missing} missing, found {header}",
                 path=path,
-                needed=", ".join(_NEEDED),
+                needed=", ".join(needed),
                 missing=", ".join(missing),
                 header=", ".join(header)[:80],
             )
-        if twice := duplicate_column(header, COLUMNS):
+        if twice := duplicate_column(header, known):
             raise BadInput("{path}: {twice}", path=path, twice=twice)
-        return [_typed(header, row) for row in rows if any(cell.strip() for cell in row)]
+        return [
+            dict(zip(header, map(as_written, row), strict=False))
+            for row in rows
+            if any(cell.strip() for cell in row)
+        ]
     except csv.Error as fault:
         raise BadInput("{path} is not a CSV: {fault}", path=path, fault=fault) from fault
 
 
-def _typed(header: Sequence[str], cells: Sequence[str]) -> Typed:
-    values = dict(zip(header, map(as_written, cells), strict=False))
+def _typed(values: Mapping[str, str]) -> Typed:
     fields = {c: values.get(c, "").replace("\0", "") for c in COLUMNS}
     stripped = {c: text if c == "answer" else text.strip() for c, text in fields.items()}
     return Typed(**stripped)

@@ -1,6 +1,7 @@
 """An answer on a scan that nobody has typed yet waits for a person, whatever its kind."""
 
 import csv
+import json
 
 from sweeps import whole_course
 
@@ -51,12 +52,37 @@ def test_a_reference_is_told_from_what_people_write():
     assert not [text for text in written if names_pictures(text)]
 
 
-def test_refusing_all_that_waits_in_a_question_does_not_refuse_what_nobody_has_read(tmp_path, capsys):
-    out, exam = tmp_path / "out", tmp_path / "exam.toml"
+def built(folder):
+    """Two papers of one exercise; return the folder and the file of the assignment."""
+    out, exam = folder / "out", folder / "exam.toml"
     exam.write_text('[[exercises]]\nname = "slotted_mechanism"\n', "utf-8")
-    (tmp_path / "class.csv").write_text("student\nAda\nBo\n", "utf-8")
-    usual = ["--roster", str(tmp_path / "class.csv"), "--formats", "ipynb", "--with", "no-solutions"]
+    (folder / "class.csv").write_text("student\nAda\nBo\n", "utf-8")
+    usual = ["--roster", str(folder / "class.csv"), "--formats", "ipynb", "--with", "no-solutions"]
     assert run(["build", str(exam), *usual, "--out", str(out)]) == 0
+    return out, exam
+
+
+def test_marks_do_not_go_out_while_a_paper_lacks_a_page(tmp_path, capsys):
+    """Who handed in nothing, ``all``, lacks no page: the attendance list says more of them."""
+    out, exam = built(tmp_path)
+    issued = ["--issued", str(out / "issued.json")]
+    assert run(["grade", str(out / "answers.csv"), *issued, "--no-feedback"]) == 0
+    assert run(["after", str(exam), *issued]) == 0
+    lines = "student;paper;pages;scanned;missing", "Ada;x1;4;3;2", "Bo;x2;;0;all"
+    for folder, read in ((out / "read", []), (tmp_path / "r", ["--read", str(tmp_path / "r")])):
+        folder.mkdir()
+        (folder / "missing.csv").write_text("\n".join(lines), "utf-8")
+        capsys.readouterr()
+        assert run(["after", str(exam), *issued, *read]) == 1
+        text = capsys.readouterr().out
+        assert "(1): Ada" in text
+        assert "Nothing waits" not in text
+        assert run(["after", str(exam), *issued, *read, "--json"]) == 1
+        assert json.loads(capsys.readouterr().out)["incomplete_papers"] == ["Ada"]
+
+
+def test_refusing_all_that_waits_in_a_question_does_not_refuse_what_nobody_has_read(tmp_path, capsys):
+    out, exam = built(tmp_path)
     with (out / "answers.csv").open(encoding="utf-8-sig", newline="") as file:
         rows = list(csv.DictReader(file))
     for row in rows:
