@@ -213,9 +213,9 @@ class _Frames:
         self.units = [np.exp(1j * np.radians(t)) for t in self.turns]
         self.origins: list[tuple[complex, complex, complex]] = []
         self.free = set(self.linkage.free)
-        for body, held in enumerate(self.linkage.origins):
-            start = self.origins[held.body] if held.body >= 0 else (0j, 0j, 0j)
-            place = self.carried(held, start)
+        for body, body_point in enumerate(self.linkage.origins):
+            start = self.origins[body_point.body] if body_point.body >= 0 else (0j, 0j, 0j)
+            place = self.carried(body_point, start)
             if body in self.free:
                 origin = mechanism.bodies[body]
                 shift = complex(self.linkage.number(origin.origin)) * MM
@@ -234,12 +234,12 @@ class _Frames:
         return v * MM, a * MM
 
     def carried(
-        self, held: BodyPoint, start: tuple[complex, complex, complex] | None = None
+        self, body_point: BodyPoint, start: tuple[complex, complex, complex] | None = None
     ) -> tuple[complex, complex, complex]:
         """Return position, velocity and acceleration of a place on a body."""
-        begin = self.origins[held.body] if start is None else start
-        arm = held.place * self.units[held.body]
-        rate, gain = self.rates[held.body], self.gains[held.body]
+        begin = self.origins[body_point.body] if start is None else start
+        arm = body_point.place * self.units[body_point.body]
+        rate, gain = self.rates[body_point.body], self.gains[body_point.body]
         return begin[0] + arm, begin[1] + 1j * rate * arm, begin[2] + (1j * gain - rate**2) * arm
 
     def gaps(
@@ -297,7 +297,7 @@ class _Frames:
         if of in self.free or on in self.free:
             order = 0
         way = np.exp(1j * np.radians(linkage.number(track.along))) * self.units[on]
-        place = self.carried(linkage.held(track.at, track.of))
+        place = self.carried(linkage.body_point(track.at, track.of))
         line = self.carried(BodyPoint(on, complex(linkage.number(track.through)) * MM))
         apart = (place[0] - line[0]) * np.conj(way)
         stated = float(linkage.values[track.distance]) * MM

@@ -145,7 +145,7 @@ class Linkage:
         """
         return number(position, self.values)
 
-    def held(self, point: str, body: str) -> BodyPoint:
+    def body_point(self, point: str, body: str) -> BodyPoint:
         """Return the position of a point on a body that has it.
 
         Parameters
@@ -171,7 +171,7 @@ class Linkage:
         -------
         The index of the body and the place in its frame, metres, complex.
         """
-        return self.held(point, self.mechanism.holders(point)[0])
+        return self.body_point(point, self.mechanism.holders(point)[0])
 
     @cached_property
     def origins(self) -> tuple[BodyPoint, ...]:
@@ -183,7 +183,7 @@ class Linkage:
                 results.append(BodyPoint(-1, 0j))
                 continue
             before = [h for h in self.mechanism.holders(body.at) if self.index[h] < k]
-            results.append(self.held(body.at, before[0]))
+            results.append(self.body_point(body.at, before[0]))
         return tuple(results)
 
     # -------------------------------------------------------------------- joints
@@ -196,7 +196,9 @@ class Linkage:
         body = self.mechanism.body(pin.of)
         several = len(self.mechanism.holders(pin.at)) > 2
         name = f"{pin.at} {pin.of}" if several else pin.at
-        return PinJoint(name, self.held(pin.at, pin.of), self.held(pin.at, pin.on), body.at != pin.at)
+        return PinJoint(
+            name, self.body_point(pin.at, pin.of), self.body_point(pin.at, pin.on), body.at != pin.at
+        )
 
     @cached_property
     def slides(self) -> tuple[SlideJoint, ...]:
@@ -204,7 +206,7 @@ class Linkage:
         return tuple(
             SlideJoint(
                 f"{s.at} slide" if s.at in pinned else s.at,
-                self.held(s.at, s.of),
+                self.body_point(s.at, s.of),
                 self.index[s.on],
                 complex(np.exp(1j * math.radians(self.number(s.along)))),
                 float(self.number(s.length)) * MM,
@@ -230,7 +232,7 @@ class Linkage:
         return tuple(results)
 
     def _middle(self, body: str, point: str) -> BodyPoint:
-        return self.held(point, body) if point else BodyPoint(self.index[body], 0j)
+        return self.body_point(point, body) if point else BodyPoint(self.index[body], 0j)
 
     @cached_property
     def masses(self) -> tuple[Mass, ...]:
@@ -244,7 +246,7 @@ class Linkage:
                         self.index[body.name],
                         mass,
                         inertia,
-                        self.held(body.centre or body.at, body.name).place,
+                        self.body_point(body.centre or body.at, body.name).place,
                     )
                 )
         return tuple(results)

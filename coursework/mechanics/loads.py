@@ -127,22 +127,22 @@ class AppliedLoad:
         return np.broadcast_to(self.by(name, driver), np.shape(driver))
 
     @property
-    def _held(self) -> BodyPoint:
+    def _body_point(self) -> BodyPoint:
         """Point of application."""
         body = self.load.body or self.linkage.mechanism.holders(self.load.on)[-1]
-        return self.linkage.held(self.load.on, body)
+        return self.linkage.body_point(self.load.on, body)
 
     # ---------------------------------------------------------------------- line
 
     @property
     def _guide(self) -> complex | BodyPoint | None:
         """Path of the loaded point: a direction, or the arm from a fixed point about which it turns."""
-        held = self._held
+        body_point = self._body_point
         for slide in self.linkage.slides:
-            if slide.on == -1 and slide.of.body == held.body:
+            if slide.on == -1 and slide.of.body == body_point.body:
                 return slide.along
-        if held.body != -1 and self.linkage.origins[held.body].body == -1 and held.place:
-            return held
+        if body_point.body != -1 and self.linkage.origins[body_point.body].body == -1 and body_point.place:
+            return body_point
         return None
 
     def _line(self, stance: Stance) -> np.ndarray | complex:
@@ -158,7 +158,7 @@ class AppliedLoad:
             return 1j * arm / np.abs(arm)
         if guide is not None:
             return guide
-        rate = stance.rate(self._held)
+        rate = stance.rate(self._body_point)
         with np.errstate(all="ignore"):
             return np.where(rate == 0, 0, rate / np.abs(rate))
 
@@ -176,7 +176,7 @@ class AppliedLoad:
         """
         if self.is_moment:
             return BodyWrenches.none(stance).turn(self.linkage.index[self.load.on], 1.0)
-        return BodyWrenches.none(stance).push(self._held, self._line(stance))
+        return BodyWrenches.none(stance).push(self._body_point, self._line(stance))
 
     def pace(self, stance: Stance) -> np.ndarray:
         """Return the rate of the loaded point or body along the line for unit speed of the driver.
@@ -192,7 +192,7 @@ class AppliedLoad:
         """
         if self.is_moment:
             return no_rounding(stance.rates[self.linkage.index[self.load.on]], 1.0)
-        return no_rounding((np.conj(self._line(stance)) * stance.rate(self._held)).real, stance.size)
+        return no_rounding((np.conj(self._line(stance)) * stance.rate(self._body_point)).real, stance.size)
 
     # ---------------------------------------------------------------------- size
 

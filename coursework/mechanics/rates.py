@@ -71,37 +71,37 @@ class Stance:
     def origins(self) -> np.ndarray:
         """Origins of the frames; the ground's is 0."""
         result = np.zeros(self.turns.shape, dtype=complex)
-        for body, held in enumerate(self.linkage.origins):
-            result[body] = result[held.body] + self.arm(held) + self._shifts.get(body, 0.0)
+        for body, body_point in enumerate(self.linkage.origins):
+            result[body] = result[body_point.body] + self.arm(body_point) + self._shifts.get(body, 0.0)
         return result
 
-    def arm(self, held: BodyPoint) -> np.ndarray:
+    def arm(self, body_point: BodyPoint) -> np.ndarray:
         """Return the vector from the origin of a body's frame to a position on it.
 
         Parameters
         ----------
-        held
+        body_point
             The position.
 
         Returns
         -------
         Metres, complex, shape ``(n,)``.
         """
-        return held.place * self.headings[held.body]
+        return body_point.place * self.headings[body_point.body]
 
-    def place(self, held: BodyPoint) -> np.ndarray:
+    def place(self, body_point: BodyPoint) -> np.ndarray:
         """Return where a position on a body lies in the ground's frame.
 
         Parameters
         ----------
-        held
+        body_point
             The position.
 
         Returns
         -------
         Metres, complex, shape ``(n,)``.
         """
-        return self.origins[held.body] + self.arm(held)
+        return self.origins[body_point.body] + self.arm(body_point)
 
     def direction(self, slide: SlideJoint) -> np.ndarray:
         """Return the directions of a slide.
@@ -124,16 +124,16 @@ class Stance:
         """Derivatives of the origins by each coordinate, shape ``(bodies + 1, coordinates, n)``."""
         bodies, n = self.turns.shape
         result = np.zeros((bodies, self.linkage.unknowns + 1, n), dtype=complex)
-        for body, held in enumerate(self.linkage.origins):
-            result[body] = self._partial(held, result)
+        for body, body_point in enumerate(self.linkage.origins):
+            result[body] = self._partial(body_point, result)
             if (first := self.linkage.free.get(body)) is not None:
                 result[body, first], result[body, first + 1] = 1.0, 1j
         return result
 
-    def _partial(self, held: BodyPoint, origins: np.ndarray) -> np.ndarray:
-        result = origins[held.body].copy()
-        if (coordinates := self.linkage.coordinates[held.body]) != NONE:
-            result[coordinates] += 1j * self.arm(held)
+    def _partial(self, body_point: BodyPoint, origins: np.ndarray) -> np.ndarray:
+        result = origins[body_point.body].copy()
+        if (coordinates := self.linkage.coordinates[body_point.body]) != NONE:
+            result[coordinates] += 1j * self.arm(body_point)
         return result
 
     @cached_property
@@ -202,33 +202,33 @@ class Stance:
     def origin_rates(self) -> np.ndarray:
         """Velocities of the frames' origins for unit speed of the driver."""
         result = np.zeros(self.turns.shape, dtype=complex)
-        for body, held in enumerate(self.linkage.origins):
-            result[body] = result[held.body] + 1j * self.rates[held.body] * self.arm(held)
+        for body, body_point in enumerate(self.linkage.origins):
+            result[body] = result[body_point.body] + 1j * self.rates[body_point.body] * self.arm(body_point)
             result[body] += self._shifted(body, self._coordinate_rates)
         return result
 
-    def rate(self, held: BodyPoint) -> np.ndarray:
+    def rate(self, body_point: BodyPoint) -> np.ndarray:
         """Return the velocity of a position for unit speed of the driver.
 
         Parameters
         ----------
-        held
+        body_point
             The position.
 
         Returns
         -------
         m/rad, complex, shape ``(n,)``.
         """
-        return self.origin_rates[held.body] + 1j * self.rates[held.body] * self.arm(held)
+        return self.origin_rates[body_point.body] + 1j * self.rates[body_point.body] * self.arm(body_point)
 
     def acceleration(
-        self, held: BodyPoint, speed: np.ndarray | float, acceleration: np.ndarray | float
+        self, body_point: BodyPoint, speed: np.ndarray | float, acceleration: np.ndarray | float
     ) -> np.ndarray:
         """Return the acceleration of a position.
 
         Parameters
         ----------
-        held
+        body_point
             The position.
         speed, acceleration
             Those of the driver, rad/s and rad/s^2; scalars or shape ``(n,)``.
@@ -241,7 +241,7 @@ class Stance:
         ------
         ``p'' speed^2 + p' acceleration`` for the derivatives p', p'' of the position by the driver's angle.
         """
-        return self.bend(held) * speed**2 + self.rate(held) * acceleration
+        return self.bend(body_point) * speed**2 + self.rate(body_point) * acceleration
 
     def coriolis(self, slide: SlideJoint, speed: np.ndarray | float) -> np.ndarray:
         """Return the Coriolis term of a slide's point.
@@ -314,35 +314,37 @@ class Stance:
 
     def _origin_bends(self, turning: np.ndarray, coordinates: np.ndarray | None = None) -> np.ndarray:
         result = np.zeros(self.turns.shape, dtype=complex)
-        for body, held in enumerate(self.linkage.origins):
-            result[body] = self._bend(held, result, turning)
+        for body, body_point in enumerate(self.linkage.origins):
+            result[body] = self._bend(body_point, result, turning)
             if coordinates is not None:
                 result[body] += self._shifted(body, coordinates)
         return result
 
-    def _bend(self, held: BodyPoint, origins: np.ndarray, turning: np.ndarray) -> np.ndarray:
+    def _bend(self, body_point: BodyPoint, origins: np.ndarray, turning: np.ndarray) -> np.ndarray:
         """Return the second derivative of a position, for second derivatives of the origins and of the
         bodies' angles."""
-        return origins[held.body] + (1j * turning[held.body] - self.rates[held.body] ** 2) * self.arm(held)
+        return origins[body_point.body] + (
+            1j * turning[body_point.body] - self.rates[body_point.body] ** 2
+        ) * self.arm(body_point)
 
     @cached_property
     def origin_bends(self) -> np.ndarray:
         """Second derivative of the frames' origins by the driver's angle."""
         return self._origin_bends(self.bends, self._coordinate_bends)
 
-    def bend(self, held: BodyPoint) -> np.ndarray:
+    def bend(self, body_point: BodyPoint) -> np.ndarray:
         """Return the second derivative of a position by the driver's angle.
 
         Parameters
         ----------
-        held
+        body_point
             The position.
 
         Returns
         -------
         m/rad^2, complex, shape ``(n,)``.
         """
-        return self._bend(held, self.origin_bends, self.bends)
+        return self._bend(body_point, self.origin_bends, self.bends)
 
     # ---------------------------------------------------------------- certificate
 

@@ -41,12 +41,12 @@ class BodyWrenches:
         """
         return BodyWrenches(stance, np.zeros(stance.turns.shape, dtype=complex), np.zeros(stance.turns.shape))
 
-    def push(self, held: BodyPoint, force: np.ndarray | complex) -> BodyWrenches:
+    def push(self, body_point: BodyPoint, force: np.ndarray | complex) -> BodyWrenches:
         """Add a force at a position of a body.
 
         Parameters
         ----------
-        held
+        body_point
             The position.
         force
             N, complex; a scalar or shape ``(n,)``.
@@ -55,7 +55,7 @@ class BodyWrenches:
         -------
         These wrenches.
         """
-        return self.push_at(held.body, self.stance.arm(held), force)
+        return self.push_at(body_point.body, self.stance.arm(body_point), force)
 
     def push_at(self, body: int, arm: np.ndarray, force: np.ndarray | complex) -> BodyWrenches:
         """Add a force at an arm from the origin of a body.
@@ -201,6 +201,8 @@ def _inertia(stance: Stance, motion: Callable[[BodyPoint], np.ndarray], turning:
     """Return the inertia forces for accelerations of positions and of the bodies' angles."""
     wrench = BodyWrenches.none(stance)
     for mass in stance.linkage.masses:
-        held = BodyPoint(mass.body, mass.centre)
-        wrench.push(held, -mass.mass * motion(held)).turn(mass.body, -mass.inertia * turning[mass.body])
+        body_point = BodyPoint(mass.body, mass.centre)
+        wrench.push(body_point, -mass.mass * motion(body_point)).turn(
+            mass.body, -mass.inertia * turning[mass.body]
+        )
     return wrench

@@ -161,38 +161,38 @@ def _record_fault(
 # --- up to names ------------------------------------------------------------------------
 
 
-def names_that_fit(answer: Graph, reference: Graph, held: Mapping[str, str]) -> dict[str, str] | None:
+def names_that_fit(answer: Graph, reference: Graph, known: Mapping[str, str]) -> dict[str, str] | None:
     """For each body of an answer the one that it stands for, such that all joints are right; None where there
     are none.
 
-    ``held`` are names that are known. A shared pivot may be written as pairs in any way that spans it.
+    ``known`` are names that are given. A shared pivot may be written as pairs in any way that spans it.
     """
     if len(bodies_of(answer)) != len(bodies_of(reference)):
         return None
     mine = _Pairs([pair for joint in answer for pair in next(_spanned(joint))])
     for ways in islice(product(*map(_spanned, reference)), _SPANNED):
-        for names in _alike(mine, _Pairs([pair for pairs in ways for pair in pairs]), held):
+        for names in _alike(mine, _Pairs([pair for pairs in ways for pair in pairs]), known):
             if compare(renamed(answer, names), reference).is_right:
                 return names
     return None
 
 
-def nearest_names(answer: Graph, reference: Graph, held: Mapping[str, str]) -> dict[str, str]:
+def nearest_names(answer: Graph, reference: Graph, known: Mapping[str, str]) -> dict[str, str]:
     """Names by which much of an answer is right: the best that exchanging two at a time leads to, from some
     starts."""
     mine, theirs = (_by_joints(graph) for graph in (answer, reference))
-    free = [body for body in mine if body not in held]
-    open_to = [body for body in theirs if body not in held.values()]
+    free = [body for body in mine if body not in known]
+    open_to = [body for body in theirs if body not in known.values()]
     open_to += [f"?{n}" for n in range(len(free) - len(open_to))]
     starts = min(_STARTS, len(open_to) or 1)
-    tried = [_climbed(answer, reference, held, free, [*open_to[n:], *open_to[:n]]) for n in range(starts)]
+    tried = [_climbed(answer, reference, known, free, [*open_to[n:], *open_to[:n]]) for n in range(starts)]
     return max(tried, key=lambda names: compare(renamed(answer, names), reference).share)
 
 
 def _climbed(
-    answer: Graph, reference: Graph, held: Mapping[str, str], free: Sequence[str], open_to: Sequence[str]
+    answer: Graph, reference: Graph, known: Mapping[str, str], free: Sequence[str], open_to: Sequence[str]
 ) -> dict[str, str]:
-    names = {**held, **dict(zip(free, open_to, strict=False))}
+    names = {**known, **dict(zip(free, open_to, strict=False))}
     spare = list(open_to[len(free) :])
     first = compare(renamed(answer, names), reference)
     best = 2 * first.right + first.halves
@@ -242,7 +242,7 @@ class _Pairs:
         return sorted(self.kinds[body].values())
 
 
-def _alike(mine: _Pairs, theirs: _Pairs, held: Mapping[str, str]) -> Iterator[dict[str, str]]:
+def _alike(mine: _Pairs, theirs: _Pairs, known: Mapping[str, str]) -> Iterator[dict[str, str]]:
     """Names by which pairs are the same, found body by body along the joints; no more than so many steps."""
     order = _along(mine)
     steps = 0
@@ -253,7 +253,7 @@ def _alike(mine: _Pairs, theirs: _Pairs, held: Mapping[str, str]) -> Iterator[di
             yield dict(names)
             return
         body = order[len(names)]
-        for other in [held[body]] if body in held else sorted(theirs.kinds, key=natural):
+        for other in [known[body]] if body in known else sorted(theirs.kinds, key=natural):
             steps += 1
             if steps > _STEPS:
                 return
@@ -264,8 +264,8 @@ def _alike(mine: _Pairs, theirs: _Pairs, held: Mapping[str, str]) -> Iterator[di
 
     if (
         len(mine.kinds) == len(theirs.kinds)
-        and set(held) <= set(order)
-        and set(held.values()) <= set(theirs.kinds)
+        and set(known) <= set(order)
+        and set(known.values()) <= set(theirs.kinds)
     ):
         yield from search({})
 

@@ -269,14 +269,14 @@ class Showing(Staged):
         return {point: complex(stance.place(self.linkage.owner(point))[0] / MM) for point in ground}
 
     def _moving(self, point: str, stance: Stance, slide: SlideJoint | None) -> Moving:
-        held = stance.linkage.owner(point)
-        position = stance.place(held) / MM
+        body_point = stance.linkage.owner(point)
+        position = stance.place(body_point) / MM
         if not self.driver.speed:
             return Moving(position)
         speed, acceleration = self._speed, self._acceleration
         with np.errstate(all="ignore"):
-            velocity = stance.rate(held) * speed / MM
-            bent = stance.acceleration(held, speed, acceleration) / MM
+            velocity = stance.rate(body_point) * speed / MM
+            bent = stance.acceleration(body_point, speed, acceleration) / MM
             if slide is None:
                 return Moving(position, velocity, bent)
             return Moving(

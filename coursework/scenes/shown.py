@@ -83,13 +83,13 @@ def of_point(kind: str, point: str, stance: Stance, speed: np.ndarray, accelerat
     if kind == "coriolis":
         (slide,) = (s for s in turning_slides(stance.linkage) if s.name.removesuffix(" slide") == point)
         return {f"a_coriolis_{point}": (stance.coriolis(slide, speed) / MM, "mm/s^2")}
-    held = stance.linkage.owner(point)
+    body_point = stance.linkage.owner(point)
     if kind == "position":
-        position = stance.place(held) / MM
+        position = stance.place(body_point) / MM
         return {f"x_{point}": (position.real, "mm"), f"y_{point}": (position.imag, "mm")}
     if kind == "velocity":
-        return _vector(f"v_{point}", stance.rate(held) * speed / MM, "mm/s")
-    return _vector(f"a_{point}", stance.acceleration(held, speed, acceleration) / MM, "mm/s^2")
+        return _vector(f"v_{point}", stance.rate(body_point) * speed / MM, "mm/s")
+    return _vector(f"a_{point}", stance.acceleration(body_point, speed, acceleration) / MM, "mm/s^2")
 
 
 def of_moving(kind: str, point: str, moving: Moving) -> Columns:

@@ -4,7 +4,7 @@ An *outing* is a question of one variant. It is clean if the first readable answ
 and without the solution. A question that was not clean returns after 1 day, and after each clean outing that
 was due, after 3, 7 and 16 days; then it rests, and an unclean outing starts the series again. A *skill* is a
 named error, or a kind of answer. Making an error loses the skill; a right answer where the error would have
-given another shows it. A skill shown in two variants since its last loss is held.
+given another shows it. A skill shown in two variants since its last loss is mastered.
 """
 
 from __future__ import annotations
@@ -99,7 +99,7 @@ class Skill:
 
     @property
     def is_open(self) -> bool:
-        """True if the skill was lost and not held since."""
+        """True if the skill was lost and not mastered since."""
         return bool(self.lost) and self.shown < HELD
 
 
@@ -234,7 +234,7 @@ def advised(
     """Return the recommended exercise of a course for a day; None for a course without exercises.
 
     In this order: the exercise with the most due questions; a new exercise that tests a skill lost and not
-    held since; the next new exercise; the question that returns first. ``errors`` returns the skills
+    mastered since; the next new exercise; the question that returns first. ``errors`` returns the skills
     that an exercise tests.
     """
     known_names = tuple(exercises)

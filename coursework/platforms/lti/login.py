@@ -73,7 +73,7 @@ class Login:
 
     def _to(self, platform: LTIPlatform, hints: dict[str, str]) -> LoginRedirect:
         nonce, value = secrets.token_urlsafe(32), secrets.token_urlsafe(32)
-        held = {
+        claims = {
             "use": _USE,
             "nonce": nonce,
             "of": [platform.issuer, platform.client_id],
@@ -81,7 +81,7 @@ class Login:
             "exp": int(self._clock() + self.settings.login_seconds),
             "hints": hints,
         }
-        state = jwt.encode(held, self._secret, "HS256")
+        state = jwt.encode(claims, self._secret, "HS256")
         query = {
             "scope": "openid",
             "response_type": "id_token",
@@ -109,7 +109,7 @@ class Login:
             The state was not made here, is too old, its platform is gone, or another browser sent it.
         """
         try:
-            held: dict[str, Any] = jwt.decode(
+            claims: dict[str, Any] = jwt.decode(
                 state,
                 self._secret,
                 algorithms=["HS256"],
@@ -117,19 +117,19 @@ class Login:
             )
         except jwt.PyJWTError:
             raise LTIRefusal("state", 400, "a state that is not ours") from None
-        if held.get("use") != _USE:
+        if claims.get("use") != _USE:
             raise LTIRefusal("state", 400, "not a state")
-        platform = self.settings.platform(*held["of"])
+        platform = self.settings.platform(*claims["of"])
         if platform is None:
-            raise LTIRefusal("platform", 403, f"{held['of'][0]!r} is no longer known")
-        if self._clock() > held["exp"]:
-            raise LTIRefusal("stale", 400, "a login of long ago", again=held["hints"])
+            raise LTIRefusal("platform", 403, f"{claims['of'][0]!r} is no longer known")
+        if self._clock() > claims["exp"]:
+            raise LTIRefusal("stale", 400, "a login of long ago", again=claims["hints"])
         value = cookies.get(cookie_of(state, self.settings.url))
         if value is None:
-            raise LTIRefusal("cookie", 400, "no cookie came back", again=held["hints"])
-        if not secrets.compare_digest(_digest(value), held["by"]):
+            raise LTIRefusal("cookie", 400, "no cookie came back", again=claims["hints"])
+        if not secrets.compare_digest(_digest(value), claims["by"]):
             raise LTIRefusal("browser", 403, "the cookie of another login")
-        return VerifiedLogin(platform, held["nonce"], float(held["exp"]), held["hints"])
+        return VerifiedLogin(platform, claims["nonce"], float(claims["exp"]), claims["hints"])
 
 
 def cookie_of(state: str, url: str) -> str:

@@ -90,15 +90,15 @@ class Middleware:
         run: Run = lanes.short if asked.is_short else lanes.usual
         await run(self._let_in, request, asked)
         budget = asked.request_budget
-        async with AsyncExitStack() as held:
-            await held.enter_async_context(visitor_slot(self.site, _visitor(request), budget))
+        async with AsyncExitStack() as stack:
+            await stack.enter_async_context(visitor_slot(self.site, _visitor(request), budget))
             if request.is_post:
                 request.form = await read_form(request, budget)
             if request.is_post and asked.attempt is not None:
                 attempt = await run(self._attempt, request, asked.attempt)
-                await held.enter_async_context(self._attempts.waited(attempt))
+                await stack.enter_async_context(self._attempts.waited(attempt))
             if request.form.files:
-                await held.enter_async_context(reading_slot(self.site, budget))
+                await stack.enter_async_context(reading_slot(self.site, budget))
             return await run(self._page, request, asked)
 
     def _let_in(self, request: Request, route: Route) -> None:
