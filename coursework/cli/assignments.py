@@ -439,7 +439,7 @@ def for_practice(lang: str) -> str:
 
 
 def _issued_before(path: Path, *, anew: bool) -> Mapping[str, Any] | None:
-    """Return what was issued there; of what is dealt ``anew``, whatever can still be read."""
+    """Return what was issued there; if variants are assigned ``anew``, only what can still be read."""
     from coursework.issuing.issued import Issued
 
     if not path.is_file():

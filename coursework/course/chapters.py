@@ -83,7 +83,7 @@ def chapters(
     stated
         The value of ``chapters`` in its settings.
     exercises, lessons
-        The names that there are.
+        The existing names.
     source
         What messages call the file.
 
@@ -184,7 +184,7 @@ def _check_names(
 
 
 def _check_order(course_chapters: Sequence[Chapter], source: str) -> None:
-    """Everything once, and after what it needs."""
+    """Raise unless everything stands once, and after what it needs."""
     every = [name for section in sections(course_chapters) for name in section.names]
     lessons = {section.lesson for section in sections(course_chapters)}
     for name in (

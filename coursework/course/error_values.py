@@ -159,7 +159,7 @@ class ErrorValues:
         return _real(value, (self.count,) if self._is_batch else ())
 
     def _column(self, value: Any) -> np.ndarray:
-        """Return a number, or one a variant, as a column ``(n,)``; NaN for whatever else."""
+        """Return a number, or one a variant, as a column ``(n,)``; NaN for anything else."""
         real = self._real(value)
         return np.broadcast_to(np.nan if real is None else real, (self.count,))
 
@@ -169,7 +169,7 @@ class ErrorValues:
 
 
 def _real(value: Any, shape: tuple[int, ...]) -> np.ndarray | None:
-    """Return a real number, or an array of this shape; None for whatever else."""
+    """Return a real number, or an array of this shape; None for anything else."""
     if isinstance(value, bool) or not isinstance(value, (int, float, np.generic, np.ndarray)):
         return None
     array = np.asarray(value)

@@ -217,7 +217,7 @@ class Folder:
         Raises
         ------
         BadCourse
-            What it states is no list of languages that the engine speaks.
+            It does not state a list of languages of the engine.
         """
         spoken = languages()
         stated = self.settings.get("languages")
@@ -268,7 +268,7 @@ class Folder:
         Raises
         ------
         BadCourse
-            What it states is no list of its exercises.
+            It does not state a list of its exercises.
         """
         order = self._study.get("order", [])
         if not isinstance(order, list) or not set(map(str, order)) <= set(self.names):

@@ -117,7 +117,7 @@ def taught_by(folder: Folder, exercise: str, lang: str) -> tuple[Lesson, ...]:
     Raises
     ------
     BadCourse
-        It names an exercise, a lesson or a section that there is not.
+        It names an exercise, a lesson or a section that does not exist.
     """
     stated = folder.settings.get("lessons", {})
     if not isinstance(stated, Mapping):

@@ -3,7 +3,7 @@
 To say it, an exercise is loaded, and with it much that takes a second for a whole course. So what was said is
 kept with the state of every file that it came from: those of ``exercises/``, of ``templates/``, of the
 engine, and of whatever else was loaded by then. Where one of them was changed, added or taken away,
-everything is said anew.
+the listing is made again.
 """
 
 from __future__ import annotations

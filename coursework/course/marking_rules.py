@@ -46,7 +46,7 @@ class Rules:
         Raises
         ------
         BadCourse
-            A rule that there is not, or a value that makes no sense.
+            A rule does not exist, or a value makes no sense.
         """
         if not isinstance(table, Mapping):
             raise BadCourse("{place}: [marking] is a table: digits = 4", place=source)

@@ -55,7 +55,8 @@ class Variant:
         return f"<variant {self.exercise.name} {self.seed}>"
 
     def __reduce__(self) -> tuple[Any, ...]:
-        """In another process it is made anew of the exercise there; what its key has computed goes along."""
+        """Return what another process makes the variant from: the exercise there, and what the key has
+        computed."""
         chosen = None if self.chosen is None else {part.id: part.points for part in self.parts}
         numbers = None if self._key is None else self._key.numbers
         return _made_anew, (

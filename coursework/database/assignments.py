@@ -69,8 +69,8 @@ def put_issued(connection: Connection, content: Mapping[str, Any], name: str = "
     Raises
     ------
     BadInput
-        It is no content of ``issued.json``, has no name, or gives somebody another variant than they were
-        issued.
+        It is not the content of ``issued.json``, has no name, or gives somebody another variant than they
+        were issued.
     """
     name = name or name_of(content)
     issued = Issued(content, "what was issued", by_name=True)

@@ -103,7 +103,7 @@ class Picture(Printed):
         Raises
         ------
         BadCourse
-            There is no such file, or it is no picture that can be shown.
+            The file does not exist, or is not a picture that can be shown.
         """
         if not isinstance(self.source, bytes):
             path = folder / self.source

@@ -50,7 +50,7 @@ def rules_of(course: Course, issued: Issued) -> Rules | None:
     Raises
     ------
     BadInput
-        A rule that there is not, or a value that makes no sense.
+        A rule does not exist, or a value makes no sense.
     """
     stated = (issued.assignment or {}).get("marking")
     if not stated:

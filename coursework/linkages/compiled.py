@@ -684,7 +684,7 @@ def _compiled(path: Path, shown: str, changed: int) -> CompiledLinkage:
 
 
 def compiled(path: Path, shown: str = "") -> CompiledLinkage:
-    """Return the compiled mechanism of a file; anew where the file has changed.
+    """Return the compiled mechanism of a file; again where the file has changed.
 
     Parameters
     ----------

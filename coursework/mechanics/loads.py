@@ -35,7 +35,7 @@ class AppliedLoad:
     Raises
     ------
     UnknownName
-        A point, a body or a stroke that there is not.
+        A point, a body or a stroke does not exist.
     WrongValue
         A force on a body, a moment on a point, a stroke of a point that goes along no line.
     """

@@ -197,7 +197,7 @@ def worked_out(
 ) -> tuple[float, ...]:
     """Return the coordinates of a vector of formulas, ``(R + 2r, 0, 0)``, ``(R + 2r) x``, in ``unit``.
 
-    ``symbols`` are those of the statement, each with its value and unit. Nothing where it is no such vector.
+    ``symbols`` are those of the statement, each with its value and unit. None where it is not such a vector.
     """
     if isinstance(text, (list, tuple)):
         text = "[" + " ; ".join(map(text_of, text[: count + 1])) + "]"

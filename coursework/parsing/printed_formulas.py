@@ -63,7 +63,7 @@ def read(latex: str, rounded_to: int, *, is_angle: bool = False) -> FormulaValue
     Raises
     ------
     NotEvaluable
-        It holds what has no value, or is no formula that can be read in one way.
+        A part of it has no value, or it can be read in several ways.
     """
     try:
         tree = parse(latex)

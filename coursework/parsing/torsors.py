@@ -367,7 +367,7 @@ def _units_behind(text: str, units: tuple[str, str]) -> tuple[str, str]:
 
 
 def _column(cells: Sequence[str | None], stated: str, unit: str) -> Reading | None:
-    """Return the cells of one column that there are, in its unit."""
+    """Return the cells of one column, in its unit."""
     filled = [cell for cell in cells if cell is not None]
     if not filled:
         return None

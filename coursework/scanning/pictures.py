@@ -43,7 +43,7 @@ _UNREADABLE = Message("page {page} of {file} cannot be read: {problem}")
 
 
 class BadPicture(BadInput):
-    """A file that is no picture of a page, is damaged, or is larger than a page can be; names it."""
+    """A file that is not a picture of a page, is damaged, or is larger than a page can be; names it."""
 
 
 @dataclass(frozen=True)

@@ -139,7 +139,7 @@ def scan(
     Raises
     ------
     BadInput
-        Something that was named is not there or is none, or the folder cannot be written.
+        A named file does not exist or is not a scan, or the folder cannot be written.
     """
     papers = Papers(course, _read_issued(issued))
     wanted = [text for path in typed for text in read_typed(path)]

@@ -67,7 +67,7 @@ class Scene(Showing):
     Raises
     ------
     UnknownName
-        An effect, or something to show, that there is not.
+        An effect, or a quantity to show, does not exist.
     WrongValue
         An effect of which this mechanism has nothing.
     """

@@ -245,7 +245,7 @@ class StudySession:
         UnknownName
             An effect that is none.
         BadInput
-            An effect of which there is nothing to show.
+            An effect without anything to show.
         """
         for effect in effects:
             wording.expect(self.variant.lang, "effect", effect, EFFECTS)
@@ -286,12 +286,12 @@ class StudySession:
     def predict(self, predicted: Mapping[str, Any] | None = None, /, **named: Any) -> NotebookDisplay:
         """Store predictions, to be compared once the answers are right or the curves are shown.
 
-        What cannot be read is said at once. Without predictions, which there are.
+        What cannot be read is said at once. Without predictions, return the stored ones.
 
         Raises
         ------
         UnknownName
-            Something that is not to be predicted here.
+            A name that is not predicted here.
         BadInput
             No dictionary.
         """

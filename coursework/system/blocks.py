@@ -17,7 +17,7 @@ PIECE = BLOCK  #: the same for a chain of quantities
 def _keep_freed_memory() -> None:
     """Let the C library keep the memory of temporaries instead of handing it back after each of them.
 
-    Otherwise every temporary of a block is paged in anew, at several times the cost of filling it.
+    Otherwise every temporary array of a block is paged in again, at several times the cost of filling it.
     Freeing one large piece raises the threshold above which memory is handed back (dynamic in glibc,
     harmless elsewhere).
     """

@@ -104,7 +104,7 @@ def install(staging: Path, out: Path, *, anew: bool) -> list[str]:
 
 
 def count_as_built(path: Path) -> None:
-    """List a file of a build that a command has written anew as the build's own, so that the next build
+    """List a file of a build that a command has rewritten as the build's own, so that the next build
     replaces it."""
     before, _ = _read(path.parent / LIST)
     if path.name in before:

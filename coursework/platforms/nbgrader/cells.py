@@ -1,7 +1,7 @@
 """Cells of a notebook with the metadata of nbgrader, schema 3.
 
 The answers cell is a solution cell; a locked grade cell stands behind it for each part. Everything that a
-student should not change is locked: nbgrader writes it anew before it marks.
+student should not change is locked: nbgrader writes it again before it marks.
 """
 
 from __future__ import annotations

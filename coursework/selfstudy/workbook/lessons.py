@@ -61,7 +61,7 @@ def opened(course: Course[Any], name: str, lang: str) -> LessonFile:
         No such lesson.
     BadCourse
         It is not written in this language; a formula, a fence or a picture is none; a link names an exercise,
-        a lesson or a section that there is not.
+        a lesson or a section that does not exist.
     """
     path = lesson_file(course.folder, name, lang)
     file = course.folder.relative(path)

@@ -1,7 +1,7 @@
 """Numbers of what a lesson shows: figures, tables, equations, examples, definitions and rules, counted from
 its own text.
 
-Nothing is numbered by hand: what is added or moved is numbered anew, in the book, in its pages and on the
+Nothing is numbered by hand: what is added or moved is renumbered, in the book, in its pages and on the
 site alike.
 """
 

@@ -231,7 +231,7 @@ class Route(NamedTuple):
 
 
 def preferred_language(wanted: str, languages: Sequence[str]) -> str:
-    """Return the first of the wanted languages that there is, from ``fr-CA, en;q=0.8`` or ``fr_FR``; else the
+    """Return the first available one of the wanted languages, from ``fr-CA, en;q=0.8`` or ``fr_FR``; else the
     first."""
     codes = re.findall(r"(?:^|[,\s])([a-zA-Z]{2,3})(?=[-_,;.\s]|$)", wanted[:500])
     return next((code.lower() for code in codes if code.lower() in languages), languages[0])

@@ -1,4 +1,4 @@
-"""Explore: a driven mechanism with freely chosen lengths and speeds, computed anew with each change.
+"""Explore: a driven mechanism with freely chosen lengths and speeds, computed again with each change.
 
 Its numbers come from the address, or from a variant that is drawn for this page alone; never from what was
 issued.
