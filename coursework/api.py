@@ -212,7 +212,7 @@ class Variant(numbers.Variant):
         UnknownName
             An answer to a part that this variant does not ask.
         WrongValue
-            The answers are no mapping, or an id is no text.
+            The answers are not a mapping, or an id is not a text.
         NoSolution
             The course folder has no solutions.
         """

@@ -177,7 +177,7 @@ def fixed(value: float, *, unit: str = "1") -> GivenSpec:
     Raises
     ------
     WrongValue
-        The value is no number.
+        The value is not a number.
     """
     if not _is_number(value):
         raise WrongValue(f"fixed(…) takes a number; found {value!r}")
@@ -689,7 +689,7 @@ class Exercise:
             raise BadCourse("an exercise needs given quantities and parts; one of them is empty")
         for name, spec in self.given.items():
             if not _NAME.match(name):
-                raise BadCourse(f"{name!r} is no name for a quantity; use letters, digits and underscores")
+                raise BadCourse(f"{name!r} is not a name for a quantity; use letters, digits and underscores")
             if not isinstance(spec, GivenSpec):
                 raise BadCourse(f"{name} is given as drawn(…), chosen(…) or fixed(…); found {spec!r}")
             check_unit(f"the unit of {name}", spec.unit)

@@ -17,7 +17,7 @@
   cannot move;
 * ``polygons`` gives the velocity and acceleration polygons, each a
   :class:`~coursework.figures.polygons.Polygon`;
-* ``overlay`` gives what a student drew over the right construction, where that is no polygon, as an
+* ``overlay`` gives what a student drew over the right construction, where that is not a polygon, as an
   :class:`~coursework.figures.polygons.own_drawing.OwnDrawing`: a function of ``answers``, as those of a
   judge, and of quantities;
 * ``LOOPS`` states the closed loops as vectors, by name; their equations are quantities:
@@ -31,7 +31,7 @@
   may give them, and they are passed to the functions as they come;
 * ``UNITS`` and ``SYMBOLS`` give unit and LaTeX of quantities that no part and no name says;
 * a name that begins with an underscore is the module's own; a function of such a name is computed once
-  a request when a quantity takes it as a parameter, and is no quantity that one could ask for.
+  a request when a quantity takes it as a parameter, and is not a quantity that one could ask for.
 """
 
 from __future__ import annotations
@@ -363,7 +363,7 @@ class Solution:
     motion: Callable[..., Mapping[str, Moving]] | None
     units: Mapping[str, str]
     symbols: Mapping[str, str]
-    structures: frozenset[str] = frozenset()  #: quantities that are no numbers: passed on as they come
+    structures: frozenset[str] = frozenset()  #: quantities that are not numbers: passed on as they come
     judges: Mapping[str, Callable[..., Any]] = field(default_factory=dict)
     polygons: Callable[..., Sequence[Polygon]] | None = None
     overlay: Callable[..., OwnDrawing | None] | None = None

@@ -65,7 +65,7 @@ _PARAMETERS = re.compile(r"<dl>((?:\s*<dd>.*?</dd>)+\s*)</dl>", re.DOTALL)
 
 
 def _for_everybody(app, pagename, templatename, context, doctree):
-    """What scrolls sideways is reached by keyboard; the parameters of a signature are no list of
+    """What scrolls sideways is reached by keyboard; the parameters of a signature are not a list of
     definitions."""
     if pagename.endswith(".fr"):
         context["language"] = "fr"

@@ -31,7 +31,8 @@ ONE = r"[+-] ?[0-9.,]*[0-9](e[+-]?[0-9]+)?[^=+@|!&'$*<>#-]*"
 
 
 def is_computed(cell):
-    """Whether it begins with what begins a formula, and is no number or list of numbers with their units."""
+    """Whether it begins with what begins a formula, and is not a number or list of numbers with their
+    units."""
     bare = cell.lstrip(UNSEEN)
     if not bare or bare[0] not in "=+-@＝＋－＠﹦﹢﹣﹫":
         return False

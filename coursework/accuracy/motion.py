@@ -115,7 +115,7 @@ def motion_rows(exercise: CourseExercise, study: Study, quick: bool) -> Iterator
 
 
 def _measured(right: _Right, point: str, quick: bool) -> Iterator[MotionRow]:
-    # What friction takes is no function of the angle alone, and in no table.
+    # What friction takes is not a function of the angle alone, and in no table.
     methods = [m for m in METHODS if point == FREE or m is not by_table]
     runs = [run for method in methods for run in method(right.scene, right.effort, right.duration, quick)]
     samples: list[list[float]] = [[] for _ in runs]

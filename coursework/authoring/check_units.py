@@ -36,7 +36,7 @@ def proof_of(variant: Variant) -> Findings:
 
 def _declared(exercise: CourseExercise) -> dict[str, str]:
     """Units by quantity; not of directions, whose length says nothing, of columns in two units, nor of what
-    is no number."""
+    is not a number."""
     free = {p.quantity for p in exercise.spec.parts if p.kind in _NO_UNIT}
     chosen = {n for n, s in exercise.spec.given.items() if s.is_choice}
     return {n: u for n, u in exercise.units.items() if n not in free and n not in chosen}

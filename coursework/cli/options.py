@@ -27,7 +27,7 @@ DONE, FOUND, BAD = 0, 1, 2  #: exit statuses
 
 
 def print_notes(notes: Sequence[str]) -> None:
-    """Say what is to be known and is no error."""
+    """Say what is to be known and is not an error."""
     for note in notes[:10]:
         warn("note: {note}", note=one_line(localised(note)))
     if len(notes) > 10:

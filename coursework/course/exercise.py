@@ -239,7 +239,7 @@ class CourseExercise(Generic[V]):
         helpers = Graph({f.__name__: f for f in self.spec.helpers})
         if driver.poses is None or name not in helpers.quantities:
             raise BadCourse(
-                f"{self.name}: its driver's angle {name} is no given quantity; where it is an answer, "
+                f"{self.name}: its driver's angle {name} is not a given quantity; where it is an answer, "
                 "a helper of that name says it, and Driver(poses=…) moves the mechanism"
             )
         return float(helpers.evaluate((name,), _known_to(helpers, given))[name])
@@ -311,7 +311,7 @@ class CourseExercise(Generic[V]):
         Raises
         ------
         UnknownName, WrongUnit, WrongValue
-            It is no given quantity of the exercise, or no value of it; with what would do.
+            It is not a given quantity of the exercise, or no value of it; with what would do.
         """
         for name in given:
             if name not in self.spec.given:

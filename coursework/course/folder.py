@@ -47,7 +47,9 @@ def course_folder(folder: str | Path | None) -> Folder:
     if not root.is_dir():
         raise BadCourse(f"no course at {root}: there is no such folder; 'coursework new DIR' makes one")
     if not (root / "exercises").is_dir():
-        raise BadCourse(f"{root} is no course: it has no folder 'exercises'; 'coursework new DIR' makes one")
+        raise BadCourse(
+            f"{root} is not a course: it has no folder 'exercises'; 'coursework new DIR' makes one"
+        )
     return Folder(root)
 
 
@@ -204,7 +206,7 @@ class Folder:
         Raises
         ------
         BadCourse
-            It is no TOML.
+            It is not TOML.
         """
         path = self.book_place / f"{name}.toml"
         return _toml(path, self.relative(path))
@@ -334,7 +336,7 @@ class Folder:
         Raises
         ------
         BadCourse
-            What it states is no requirement.
+            What it states is not a requirement.
         """
         return pip_install(f"./{self.wheel.name}" if self.wheel else self._requirement)
 

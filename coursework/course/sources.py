@@ -120,7 +120,7 @@ def included(folder: Folder, path: Path) -> list[Path]:
     Raises
     ------
     BadCourse
-        The text is no template.
+        The text is not a template.
     """
     import jinja2
     from jinja2 import meta

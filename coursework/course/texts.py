@@ -41,7 +41,7 @@ if TYPE_CHECKING:
     pass
 
 _HEADING = re.compile(r"^(#{1,2})\s+(.+?)\s*$", re.MULTILINE)
-_ENCODING = "utf-8-sig"  #: a mark of the byte order, which some editors write, is no part of the text
+_ENCODING = "utf-8-sig"  #: a mark of the byte order, which some editors write, is not a part of the text
 _TELLING = 15  #: characters by which a line of a text is found again
 _LABEL = re.compile(r"^- ([A-Za-z][\w-]*): (.+)$", re.MULTILINE)
 

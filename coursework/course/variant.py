@@ -325,7 +325,7 @@ class Variant:
         Raises
         ------
         BadCourse
-            What the exercise gives is no figure, or a picture that cannot be shown.
+            What the exercise gives is not a figure, or a picture that cannot be shown.
         """
         function = self.exercise.spec.figure
         if function is None:

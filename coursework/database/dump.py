@@ -49,7 +49,7 @@ def dump(store: Store, folder: Path) -> dict[str, int]:
     """
     if not is_bare(folder) and not (folder / _ABOUT).exists():
         raise BadInput("{folder} contains other files: name an empty folder, or a new one", folder=folder)
-    (folder / _ABOUT).unlink(missing_ok=True)  # what is half written is no dump
+    (folder / _ABOUT).unlink(missing_ok=True)  # what is half written is not a dump
     rows = {}
     with store.reading() as connection:
         for table in _dumped():

@@ -21,7 +21,7 @@ def secret(connection: Connection) -> bytes:
     Raises
     ------
     BadInput
-        The stored value is no key.
+        The stored value is not a key.
     """
     stored = connection.execute(select(setting.c.value).where(setting.c.name == _KEY)).scalar()
     if stored is None:

@@ -56,8 +56,8 @@ in italics, or plain words (anything with a space, or three letters and more), s
 Each is placed by itself near what it names, on no line and on no other label; one that finds
 room only farther away gets a thin leader. The same figure always gives the same bytes.
 
-Errors: WrongValue names the element whose point is not finite or whose length is not
-positive, and refuses a figure without extent and a label that is no formula of letters, indices and accents.
+Errors: WrongValue names the element whose point is not finite or whose length is not positive, and refuses a
+figure without extent and a label that is not a formula of letters, indices and accents.
 """
 
 from coursework.figures.base import Element

@@ -21,7 +21,7 @@ class OwnMarks(NamedTuple):
 
     sheets: tuple[Graded, ...]
     rejected: tuple[Rejected, ...] = ()
-    notes: tuple[str, ...] = ()  #: what is to be known and is no error
+    notes: tuple[str, ...] = ()  #: what is to be known and is not an error
 
 
 def marks_of_student(

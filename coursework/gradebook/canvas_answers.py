@@ -29,7 +29,7 @@ class AnalysisColumns(NamedTuple):
 
 
 def columns_of(header: Sequence[str]) -> AnalysisColumns | None:
-    """Return the positions of the columns; None if this is no Student Analysis."""
+    """Return the positions of the columns; None if this is not a Student Analysis."""
     titles = [title.strip().casefold() for title in header]
     questions = tuple(k for k, title in enumerate(header) if _QUESTION.match(title))
     if not questions or not {"name", "id", "attempt"} <= set(titles):

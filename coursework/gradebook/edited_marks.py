@@ -113,7 +113,8 @@ class EditedMarks:
         Raises
         ------
         BadInput
-            Points that are no number from 0 to those of the part, or another number to have than was issued.
+            Points that are not a number from 0 to those of the part, or another number to have than was
+            issued.
         """
         sheets, key = self.sheets.sheets, graded[:3]
         rows = sheets[(*key, graded.sitting)] if (*key, graded.sitting) in sheets else sheets[(*key, 0)]

@@ -182,7 +182,7 @@ def write_marks(
         if feedback:
             renew_feedback(course, book, sheets_shown, out, progress, form, tables.check)
         tables.check()
-        # Stopped halfway, these are no marks that a hand changed.
+        # Stopped halfway, these are not marks that a hand changed.
         write_down(out / _WRITTEN, marks.path, marks.part, *([] if edited else [marks.path]))
         tables.commit()
     _remove_earlier_files(out)

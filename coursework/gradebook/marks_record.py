@@ -40,7 +40,7 @@ def read_record(folder: Path) -> MarksRecord | None:
     Raises
     ------
     BadInput
-        It is no record.
+        It is not a record.
     """
     path = folder / _FILE
     if not path.is_file():

@@ -45,7 +45,7 @@ class ResponseColumns(NamedTuple):
 
 
 def columns_of(header: Sequence[str]) -> ResponseColumns | None:
-    """Return the positions of the columns; None if this is no Responses report."""
+    """Return the positions of the columns; None if this is not a Responses report."""
     matches = [_NUMBERED.fullmatch(title.strip()) for title in header]
     numbers = [
         match["number"] if match and not _is_grade(header, k) else "" for k, match in enumerate(matches)

@@ -259,7 +259,7 @@ def literal_answers(code: str) -> dict[Any, Any] | str:
     """Return the dict of an answers cell, or a message about its fault. Nothing is executed.
 
     ``answers = {…}`` or a bare ``{…}`` of texts, numbers, None, and lists or tuples of these. A value that is
-    none of them is the text that stands there; a cell that is no Python is read line by line.
+    none of them is the text that stands there; a cell that is not Python is read line by line.
     """
     if len(code) > _LONGEST:
         return Message("the answers cell is too long to be read")
@@ -381,8 +381,8 @@ _QUOTED = re.compile(r"""(["'])([^"']*)\1""")
 
 
 def _answers_by_line(code: str) -> dict[Any, Any] | str:
-    """Return the answers of a cell that is no Python, one per line as in the notebook, or a message about the
-    faulty line."""
+    """Return the answers of a cell that is not Python, one per line as in the notebook, or a message about
+    the faulty line."""
     pairs: list[tuple[Any, Any]] = []
     is_open = is_closed = False
     number, line = 0, ""

@@ -17,7 +17,7 @@ class PlatformGradebook(NamedTuple):
     title_of_platform: str  #: as people call it
     title: str  #: a pattern of a column's title with ``item`` in it, and ``most`` where it tells the maximum
     download: str  #: how its export is had
-    special_marks: tuple[str, ...] = ()  #: contents of cells that are no marks and stay unchanged
+    special_marks: tuple[str, ...] = ()  #: contents of cells that are not marks and stay unchanged
     maxima: str = ""  #: what a line of maxima begins with
     decimal: str = ""  #: the decimal sign that it reads in every language; empty where it is that of the file
 

@@ -1,4 +1,5 @@
-"""Presence at an exam, where somebody stated it: of a student who is absent, no points are no zero."""
+"""Presence at an exam, where somebody stated it: of a student who is absent, having no points is not having
+zero."""
 
 from __future__ import annotations
 

@@ -208,7 +208,7 @@ def _read_csv(data: bytes, source: str) -> Iterator[AnswerRow | Rejected | Platf
         cells, row_record = record(lines, number, delimiter, len(header))
         number += row_record
         if not any(c.strip() for c in cells):
-            continue  # a blank line is no row
+            continue  # a blank line is not a row
         if header:
             has_rows = True
             yield from _csv_row(header, cells, delimiter, location, warning)

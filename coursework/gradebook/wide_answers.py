@@ -29,7 +29,7 @@ class WideColumns(NamedTuple):
 
 
 def columns_of(header: Sequence[str]) -> WideColumns | None:
-    """Return the positions of the columns; None if this is no table with a column for each question."""
+    """Return the positions of the columns; None if this is not a table with a column for each question."""
     titles = [title.strip() for title in header]
     named = [k for k, title in enumerate(titles) if is_called(title, WHOLE)]
     ids = tuple(k for k, title in enumerate(titles) if is_called(title, NUMBER))
@@ -48,7 +48,7 @@ def columns_of(header: Sequence[str]) -> WideColumns | None:
 def read_wide(
     header: Sequence[str], rows: Iterable[tuple[str, Sequence[str]]], source: str, warning: str
 ) -> Iterator[AnswerRow | Rejected | PlatformFile]:
-    """Yield the answers of a wide table, question by question; an empty cell is no answer."""
+    """Yield the answers of a wide table, question by question; an empty cell is not an answer."""
     columns = columns_of(header)
     assert columns is not None, "only a header that has them comes here"
     for location, cells in rows:

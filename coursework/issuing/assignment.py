@@ -1,6 +1,6 @@
 """Assignment: the exercises that an instructor hands out and marks together, described in a TOML file.
 
-An unknown key, an unknown part, points that are no number, a date that is none: each error names the file,
+An unknown key, an unknown part, points that are not a number, a date that is none: each error names the file,
 its line and the remedy.
 """
 

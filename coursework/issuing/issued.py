@@ -353,7 +353,7 @@ def _enter(students: dict[Any, str | None], key: Any, student: str) -> None:
 
 
 class _Unfit(ValueError):
-    """Error of content that is no issued record."""
+    """Error of content that is not an issued record."""
 
 
 #: Fields of an item and of its record, with their types; those of an item are optional.
@@ -390,7 +390,7 @@ def _check_kind(name: str, value: Any, kind: type) -> None:
 
 
 def _check_parts(parts: Sequence[Any]) -> None:
-    """Raise if parts lack ids or points, or if choices are no texts."""
+    """Raise if parts lack ids or points, or if choices are not texts."""
     met = set()
     for part in parts:
         if not isinstance(part, dict):

@@ -87,7 +87,7 @@ def latex_of_equation(text: str, symbols: Mapping[str, str]) -> str:
     Raises
     ------
     Unreadable
-        A name without a symbol, or a text that is no equation.
+        A name without a symbol, or a text that is not an equation.
     """
     equation = parse_equation(text, symbols)
     return f"{_latex(equation.left.root, symbols)} = {_latex(equation.right.root, symbols)}"

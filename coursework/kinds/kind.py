@@ -231,7 +231,7 @@ class Kind(ABC):
         return ""
 
     def words(self, value: Any, label: Callable[[str], str]) -> str:
-        """Return a reference in words, Markdown, where it is no formula; ``label`` calls its cases."""
+        """Return a reference in words, Markdown, where it is not a formula; ``label`` calls its cases."""
         return ""
 
     def units(self, unit: str) -> tuple[str, ...]:

@@ -1,7 +1,7 @@
 """Sides and angles of a triangle that keep their digits when it is flat or its angle is small.
 
 Lengths in one common unit, positive; scalars or arrays that broadcast. An angle that is given is in radians
-or a heading (:mod:`angles`), one that is found is in radians in [0, pi]. What is no triangle raises
+or a heading (:mod:`angles`), one that is found is in radians in [0, pi]. What is not a triangle raises
 :class:`CannotAssemble` when every argument is a scalar, and is NaN there and only there in arrays.
 """
 

@@ -213,7 +213,7 @@ class CompiledLinkage:
             and names_in(formulas.quantities[n].code)
             and n not in stated
         ]
-        if linkage.drive.kind != "turn":  # a length's rate is no angle's
+        if linkage.drive.kind != "turn":  # a length's rate is not an angle's
             rates = []
         if varies and linkage.speed and rates:
             slow = [

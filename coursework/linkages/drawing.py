@@ -108,8 +108,8 @@ class FigureWriter:
         self._add(f"link({', '.join(map(self._at, ordered))})")
 
     def _is_end(self, point: str, body: str) -> bool:
-        """Return whether a point that is no pin is drawn as the end of its body: a tracer point, or one that
-        slides."""
+        """Return whether a point that is not a pin is drawn as the end of its body: a tracer point, or one
+        that slides."""
         return (
             body not in self._blocks
             and len(self.linkage.bodies[body].points) > 1

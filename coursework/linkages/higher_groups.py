@@ -16,7 +16,7 @@ from coursework.linkages.terms import Plane, Sum
 
 
 class HigherGroupWriter(LoopWriter):
-    """Writer of the groups that are no pairs of bodies."""
+    """Writer of the groups that are not pairs of bodies."""
 
     def _large(self, group: HigherGroup) -> None:
         linkage = self.linkage

@@ -31,7 +31,7 @@ _WORDS = (
     "polygon_of_accelerations FourBar SliderCrank "
     "Degrees from_radians scale_for to_paper if_long turned met off_both verdicts DrawingParts Moving"
 )
-FUNCTIONS = frozenset(_WORDS.split())  #: names in code that are no quantities
+FUNCTIONS = frozenset(_WORDS.split())  #: names in code that are not quantities
 _OTHERS = ("pi", "min", "hypot", "result")  #: names that code or an expression uses besides
 
 
@@ -50,7 +50,7 @@ class Quantity:
     step: str = ""
     words: Mapping[str, str] = field(default_factory=dict)
     stable: str = ""
-    silent: bool = False  #: whether its code is no formula to print
+    silent: bool = False  #: whether its code is not a formula to print
     meeting: str = ""  #: code of what an error of it names: bodies and points
 
     @property

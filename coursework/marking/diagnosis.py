@@ -334,7 +334,7 @@ def _is_constant(key: Key, part: Part, value: Any, before: EarlierAnswers) -> bo
 
 
 def _lengths(variant: KeySource) -> dict[str, float]:
-    """Return the given numbers that are no angles."""
+    """Return the given numbers that are not angles."""
     units = variant.exercise.units
     return {n: v for n, v in variant.used.items() if not isinstance(v, str) and units.get(n) != "deg"}
 

@@ -82,7 +82,8 @@ def _remarks(
 
 
 def _size_remarks(variant: Variant, part: Part, value: Any, reference: Any) -> Iterator[Sentence]:
-    """Yield what the sign and the order of magnitude of a wrong number tell, of one that is no direction."""
+    """Yield what the sign and the order of magnitude of a wrong number tell, of one that is not a
+    direction."""
     sort = part.sort
     if not sort.is_number or sort.is_exact or sort.turn or not value or not reference:
         return

@@ -111,7 +111,7 @@ class _Boxes:
 
     def _is_right_to_judges(self, ways: Mapping[str, Exchange]) -> bool:
         """Return whether the judges of exchanged answers take each for right where it belongs, and name no
-        mistake of theirs any more: what other answers show still is no exchange."""
+        mistake of theirs any more: what other answers show still is not an exchange."""
         shown = {v.said.mistake for i in ways if (v := self._verdicts.get(i)) and v.said} - {""}
         placed = {way.part.id: way.reading.values[way.place] for way in ways.values() if way.part.judge}
         for name, ids in judges_of(self._variant):

@@ -50,7 +50,7 @@ _is_plain = _BARE.fullmatch
 
 @lru_cache(maxsize=1024)
 def _plain_sentence(sentence: str, lang: str) -> str:
-    """Return a sentence with its places still open. Braces are no markup, and come through."""
+    """Return a sentence with its places still open. Braces are not markup, and come through."""
     return plain_line(sentence, lang)
 
 

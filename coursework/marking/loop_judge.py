@@ -170,7 +170,7 @@ class LoopJudge:
         return basis, np.linalg.pinv(basis)
 
     def _finding(self, equation: Equation) -> Finding:
-        with np.errstate(all="ignore"):  # what overflows is no answer
+        with np.errstate(all="ignore"):  # what overflows is not an answer
             return self._found(equation)
 
     def _found(self, equation: Equation) -> Finding:

@@ -53,7 +53,7 @@ def mark(variant: Variant, answers: Mapping[str, Any], known: Mapping[str, str] 
     UnknownName
         An answer to a part that the variant does not ask.
     WrongValue
-        The answers are no mapping of parts, named by texts.
+        The answers are not a mapping of parts, named by texts.
     NoSolution
         The course folder has no solutions.
     """

@@ -516,7 +516,7 @@ class _FormulaParser:
         text = self.raw_group(r"\num")
         match = _NUM.fullmatch(text.strip())
         if match is None:
-            raise self.refuse(rf"\num{{{text}}} is no number with a point, such as -1234.5 or 1.2e5")
+            raise self.refuse(rf"\num{{{text}}} is not a number with a point, such as -1234.5 or 1.2e5")
         sign, digits, exponent = match.groups()
         return Num(sign == "-", "0" + digits if digits.startswith(".") else digits, exponent or "")
 

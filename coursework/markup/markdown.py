@@ -235,7 +235,7 @@ def _leads(node: SyntaxTreeNode) -> bool:
     return after is not None and after.type in ("math_block", "math_block_label", "table")
 
 
-#: What a link leads to that is no link: a term of the index, whose entry is the link's title.
+#: What a link leads to that is not a link: a term of the index, whose entry is the link's title.
 INDEX = "#index"
 #: What is found for an index and looks like any other word.
 FOUND = ("#word", "#machine")

@@ -18,7 +18,7 @@ from coursework.language.numbers import localise
 FIRST_HOLE, LAST_HOLE = "\ue000", "\uf8ff"
 _MOST = ord(LAST_HOLE) - ord(FIRST_HOLE)
 
-#: An exponent is no number of a student's.
+#: An exponent is not a number of a student's.
 _DIGITS = re.compile(r"(?<!\^\{)(\\num\{[+-]?)(\d+(?:\.\d+)?)(?=(?:[eE][+-]?\d+)?\})")
 _HOLE = re.compile(f"([{FIRST_HOLE}-{LAST_HOLE}])")
 _SAMPLES = ("12.5", "1")

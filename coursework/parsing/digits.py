@@ -106,7 +106,7 @@ def in_unit(value: Fraction | float, unit: Unit, target: Unit) -> float:
     """Return the value converted and rounded once, or the reason why it is not."""
     if not same_dimension(unit, target):
         if meant_otherwise(unit, target):
-            raise Stop("unknown_unit", unit.text)  # somebody looks: it is no unit of another kind
+            raise Stop("unknown_unit", unit.text)  # somebody looks: it is not a unit of another kind
         raise Stop("other_dimension", unit.text, "wrong_unit")
     try:
         number = float(convert(value, unit, target))

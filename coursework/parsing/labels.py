@@ -303,7 +303,7 @@ def numbers_of(labels: Sequence[str]) -> set[int]:
 
 
 def counts(labels: Sequence[str]) -> bool:
-    """Return whether labels begin with a number: one that is no article."""
+    """Return whether labels begin with a number: one that is not an article."""
     return not numbers_of(labels) <= {1} or any(
         re.search(r"[0-9]|\bI\b", head(s)) for s in labels if numbers_of([s])
     )

@@ -74,7 +74,7 @@ _NO_NAME = re.compile(
     r"|wrong)(?![^\W\d_])"
     r"|(?<![\w_^{(])[+-]?\s*(?:[0-9]+[.,][0-9]|[0-9]{3,}|[.,][0-9]|0(?![0-9]))|(?<![\w\s])\s*[+-]\s*[0-9]",
     re.I,
-)  #: what is no name of a quantity: another number (an index is none), or what is said against one
+)  #: what is not a name of a quantity: another number (an index is none), or what is said against one
 
 
 #: What refers to another place, or speaks of the sheet and not of a quantity: ``see question: 3``,
@@ -603,8 +603,8 @@ def read_number(text: Any, unit: str, *, thousands: bool = True, measured: bool 
     Without a unit it is in ``unit``; where ``unit`` is ``deg`` and the formula speaks of radians (``π/3``),
     radians are tried first. An int or float is taken as it is. Unless ``thousands``, the comma of ``1,234``
     is decimal and nothing else: a direction has no thousands of degrees, and modulo a turn any number may be
-    near. Unless ``measured``, ``2:1`` and ``2/1`` are two numbers, and so are ``80 ± 2``: a count is no ratio
-    and has no margin.
+    near. Unless ``measured``, ``2:1`` and ``2/1`` are two numbers, and so are ``80 ± 2``: a count is not a
+    ratio and has no margin.
 
     Raises
     ------
@@ -637,7 +637,7 @@ def _read(text: Any, unit: str, thousands: bool, measured: bool) -> Reading:
     return reading_of(text, read)
 
 
-_read_text = lru_cache(maxsize=4096)(_read)  #: a class writes the same, what is no number above all
+_read_text = lru_cache(maxsize=4096)(_read)  #: a class writes the same, what is not a number above all
 
 
 def read_numbers(texts: Sequence[object], unit: str) -> tuple[np.ndarray, np.ndarray]:

@@ -27,7 +27,7 @@ _SERIES = (list, tuple, set, frozenset)
 
 
 class Strange:
-    """Value that is no answer, printed as the name of its type."""
+    """Value that is not an answer, printed as the name of its type."""
 
     def __init__(self, answer: object) -> None:
         self._name = str(type(answer).__name__)

@@ -204,7 +204,7 @@ def worked_out(
     if not isinstance(text, str) or len(text) > MAX_LENGTH:
         return ()
     plain, target = plain_spelling(unwrapped(text)).rstrip(" .;,"), parse_unit(unit)
-    if (title := NAME.match(plain)) and ":" not in title[0]:  # a colon is no equals sign: "lambda x: x"
+    if (title := NAME.match(plain)) and ":" not in title[0]:  # a colon is not an equals sign: "lambda x: x"
         plain = plain[title.end() :]
     values = {name: _in_unit_of(target, value, parse_unit(own)) for name, (value, own) in symbols.items()}
     try:

@@ -80,7 +80,7 @@ def bare_value(answer: Any) -> Any:
     return answer
 
 
-#: Of a direction, beyond which it is no answer: modulo a turn any huge number is near any other.
+#: Of a direction, beyond which it is not an answer: modulo a turn any huge number is near any other.
 MOST_TURNS = 100
 _MAX_ITEMS, _MAX_NESTING = 100, 4  #: of an array that is looked into
 

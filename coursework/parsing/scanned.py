@@ -32,7 +32,7 @@ def scan_references(text: str) -> tuple[tuple[str, str], ...]:
 
 
 def names_pictures(text: str) -> bool:
-    """Return True if a text is no answer and names the pictures of one: a person has to look at them."""
+    """Return True if a text is not an answer and names the pictures of one: a person has to look at them."""
     return text.startswith(_STARTS) and all(
         _OF_SITE.fullmatch(piece) or _OF_FOLDER.fullmatch(piece) for piece in text.split("; ")
     )

@@ -464,7 +464,7 @@ def _marked(text: str, form: TorsorForm) -> set[str]:
     if has_dashes and not (is_table and (plane or _dashed_as_plane(cells, form))):
         raise Stop("wrong_torsor", text)
     written = {form.names[index]: cell for index, cell in enumerate(stripped) if cell and cell not in _DASHES}
-    if not written or ("≠" in written.values() and not is_table):  # && says nothing, 0 ≠ 1 is no row
+    if not written or ("≠" in written.values() and not is_table):  # && says nothing, 0 ≠ 1 is not a row
         raise Stop("wrong_torsor", text)
     marked = {name: cell for name, cell in written.items() if not _ZERO.fullmatch(cell)}
     has_zero = len(marked) < len(written) or all(

@@ -2,7 +2,7 @@
 
 A unit is an exact rational factor, a power of pi, and a dimension. Angle is a dimension of
 its own, so that a length is never taken for an angle; where one of two units leaves the
-angle out (``1/s`` for ``rad/s``), it is in radians. A level in decibels is one too: it is no ratio.
+angle out (``1/s`` for ``rad/s``), it is in radians. A level in decibels is one too: it is not a ratio.
 
 ``K`` and ``°C`` alone are temperatures, each counted from its own zero: 20 °C is 293.15 K. In a product or a
 quotient (``W/(m^2*K)``), and as ``delta_K``, they are differences: 20 °C is 20 K.
@@ -48,7 +48,7 @@ _MAX_DECADES = 100
 
 
 class UnknownUnit(WrongUnit):
-    """A text that is no unit; ``found`` is the piece that is not known."""
+    """A text that is not a unit; ``found`` is the piece that is not known."""
 
     def __init__(self, template: str, piece: str = "", **values: object) -> None:
         super().__init__(template, **({"piece": piece, **values} if values else {}))
@@ -486,7 +486,7 @@ def _compatible(a: Unit, b: Unit) -> bool:
     if a.dimension == b.dimension:
         return True
     rest = _without_angle(a.dimension)
-    # A bare number is no angle, and an angle no ratio; beside another dimension radians may go unsaid.
+    # A bare number is not an angle, and an angle no ratio; beside another dimension radians may go unsaid.
     return rest == _without_angle(b.dimension) and any(rest)
 
 

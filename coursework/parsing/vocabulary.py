@@ -19,7 +19,7 @@ Value = float | complex | np.ndarray
 
 
 class Unreadable(CourseworkError, ValueError):
-    """A text that is no number, formula or equation we can read.
+    """A text that is not a number, formula or equation we can read.
 
     ``code`` is a short key for the reason, ``found`` the piece that stops the reading.
     """

@@ -72,7 +72,7 @@ def made_items(name: str, variants: Sequence[Variant], pool: str) -> list[MadeIt
 
 
 _ROOM = Path(__file__).parent
-#: What stands in this room and is no platform.
+#: What stands in this room and is not a platform.
 _ENGINE = ("__init__", "exporting", "items", "losses", "pieces", "platform", "pools", "posed")
 
 

@@ -72,7 +72,7 @@ def _is_guard(statement: ast.stmt) -> bool:
 
 
 def called_name(node: ast.expr) -> str:
-    """Return the name of the called function, without its module; empty where the node is no call."""
+    """Return the name of the called function, without its module; empty where the node is not a call."""
     if not isinstance(node, ast.Call):
         return ""
     function = node.func

@@ -34,7 +34,7 @@ class OtherNames:
         return self._functions[function]
 
     def foreign(self, value: Any) -> Any:
-        """Return what stands for something that is no function in Python."""
+        """Return what stands for something that is not a function in Python."""
         return value
 
     def value(self, name: str, value: Any, package: str) -> Any:

@@ -109,8 +109,8 @@ def _with(powers: Sequence[float], **changed: float) -> tuple[float, ...]:
 def fits(result: Size, declared: Size) -> bool:
     """Return whether a value of one size may be declared in the other.
 
-    Radians, turns and plain numbers need no mention; a plain 180 or a count of turns is no angle, and radians
-    a second are no hertz.
+    Radians, turns and plain numbers need no mention; a plain 180 or a count of turns is not an angle, and
+    radians a second are not hertz.
     """
     if not result.is_like(declared):
         return False

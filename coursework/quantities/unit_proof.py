@@ -132,7 +132,7 @@ class _Walk:
             return result
         result = gathered(result)
         if isinstance(result, Opaque):
-            raise Unprovable("it is no number")
+            raise Unprovable("it is not a number")
         for leaf in leaves(result):
             if isinstance(leaf, UnitValue):
                 self._refuse_misfit(name, node, leaf)

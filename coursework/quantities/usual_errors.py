@@ -187,7 +187,7 @@ class _Changes:
         if takes_degrees and name in _TAKE_ANGLES:
             angle = arguments[-1]
             yield DEGREES, angle, _called_as(node, name, [*arguments[:-1], _in_radians(angle)])
-        inner = slice(1, None) if name == "where" else slice(None)  # a condition is no part of a formula
+        inner = slice(1, None) if name == "where" else slice(None)  # a condition is not a part of a formula
         for kind, about, tree in self._inside(
             arguments[inner],
             lambda changed: _changed(node, "args", [*arguments[: inner.start or 0], *changed]),

@@ -238,7 +238,7 @@ def _gather_paper(
     for printed in paper.asked:
         by_part.setdefault(printed.place[:3], []).append(printed)
     for part, fields in by_part.items():
-        if not part[2]:  # paper to draw on, which is no answer by itself
+        if not part[2]:  # paper to draw on, which is not an answer by itself
             _note_drawing(combined, paper, readings.get(fields[0].place, ()))
             continue
         settled = [

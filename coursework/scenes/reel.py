@@ -195,7 +195,7 @@ class Reel:
         location = f"{self.variant.exercise.solution.source}: FILM"
         if film.speed not in self.variant.given:
             given = ", ".join(self.variant.given)
-            raise BadCourse(f"{location}: speed={film.speed!r} is no given quantity; there are {given}")
+            raise BadCourse(f"{location}: speed={film.speed!r} is not a given quantity; there are {given}")
         turns = self._stated("figure", film.turns, self.variant.given)
         if not isinstance(turns, (int, float)) or not 0 < turns <= MOST_TURNS:
             raise BadCourse(

@@ -300,7 +300,7 @@ class Staged:
 
     def _acting(self, load: Load) -> AppliedLoad:
         """Return a load on the mechanism; a quantity of it that the driver moves is followed over the turn.
-        Raises WrongValue: it goes by what the driver's speed changes, which is no place; a function hides
+        Raises WrongValue: it goes by what the driver's speed changes, which is not a place; a function hides
         that it moves; or it acts during the strokes of a crank where a jack drives."""
         if "stroke" in load.during:
             check_turns(f"the {load.during}", self.exercise)

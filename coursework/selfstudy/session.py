@@ -404,8 +404,8 @@ class StudySession:
         """Mark answers, by the name or number of the question, and give feedback; stored answers fill in for
         blank ones.
 
-        An entry ``student`` is no answer. The value of an answer is never printed. ``check(rA="238")`` does
-        as well.
+        An entry ``student`` is not an answer. The value of an answer is never printed. ``check(rA="238")``
+        does as well.
 
         Raises
         ------
@@ -469,7 +469,7 @@ class StudySession:
         UnknownName
             No such question, and no such quantity on the way to one.
         BadInput
-            A step that is no whole number.
+            A step that is not a whole number.
         """
         if question == "":
             return self._display(self._which("hint", self._texts["hint"]["which"]))

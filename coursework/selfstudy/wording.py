@@ -177,7 +177,7 @@ def by_name(lang: str, call: str, text: object) -> Mapping[str, Any]:
     Raises
     ------
     BadInput
-        It is no dictionary.
+        It is not a dictionary.
     """
     if not isinstance(text, Mapping):
         raise refused(lang, "mapping", call=call, found=f"{text!r:.60}")

@@ -107,7 +107,7 @@ def _steps(variant: Variant, values: Mapping[str, Any], text: Any) -> tuple[Step
 
 
 def _named_besides(variant: Variant, values: Mapping[str, Any]) -> set[str]:
-    """Return the names in formulas whose own values need the formula's result, so that they are no step
+    """Return the names in formulas whose own values need the formula's result, so that they are not a step
     before it."""
     graph = variant.exercise.solution.graph
     nodes = (graph.node(name) for name in values if name in graph.names)

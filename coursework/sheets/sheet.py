@@ -99,7 +99,7 @@ class Remark:
     """A known mistake that lurks at a step."""
 
     words: str  #: Markdown
-    #: What it gives in place of the right value, as Markdown; empty where that is no number and no case.
+    #: What it gives in place of the right value, as Markdown; empty where that is not a number and no case.
     wrong: str = ""
 
 

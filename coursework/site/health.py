@@ -26,7 +26,7 @@ class Health:
     session.
 
     It tells nothing else of the site: ``{"database": "ok", "marking": "ok"}``; ``behind`` if submissions have
-    waited longer than :data:`_BEHIND` for their marks, which is no reason to start the site again.
+    waited longer than :data:`_BEHIND` for their marks, which is not a reason to start the site again.
     """
 
     def __init__(self, site: Site):

@@ -84,7 +84,7 @@ def decompose(joints: JointGraph | Iterable[Record], driver: Sequence[int]) -> D
         A higher pair, a formula's count other than 1, several joints between frame and driver, or bodies that
         have more pairs than conditions to settle.
     WrongValue
-        Records that are no mechanism (:meth:`JointGraph.of`), or a driver that no lower pair joins to the
+        Records that are not a mechanism (:meth:`JointGraph.of`), or a driver that no lower pair joins to the
         frame.
 
     Source

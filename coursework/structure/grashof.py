@@ -1,8 +1,8 @@
 """Grashof's rule, decided exactly on the printed decimals of the lengths.
 
-A printed length such as 0.3 is no double: the lengths are the decimals, the shortest that their doubles stand
-for, and their sums are compared without rounding. So 0.1 + 0.6 equals 0.3 + 0.4, and a length that differs
-from another in its last digit differs.
+A printed length such as 0.3 is not a double: the lengths are the decimals, the shortest that their doubles
+stand for, and their sums are compared without rounding. So 0.1 + 0.6 equals 0.3 + 0.4, and a length that
+differs from another in its last digit differs.
 """
 
 from __future__ import annotations

@@ -121,7 +121,7 @@ class JointGraph:
 
         Returns
         -------
-        The joints in the graph's order; none for a number that is no body.
+        The joints in the graph's order; none for a number that is not a body.
         """
         return tuple(joint for joint in self.joints if body in joint.bodies)
 

@@ -37,7 +37,7 @@ def kinematic_graph(joints: JointGraph | Iterable[Record]) -> Figure:
     Raises
     ------
     WrongValue
-        Records that are no mechanism (:meth:`JointGraph.of`).
+        Records that are not a mechanism (:meth:`JointGraph.of`).
     """
     graph = JointGraph.of(joints)
     places = _places(graph)

@@ -62,7 +62,7 @@ def kinematic_scheme(
     Raises
     ------
     WrongValue
-        Records that are no mechanism (:meth:`JointGraph.of`).
+        Records that are not a mechanism (:meth:`JointGraph.of`).
     """
     graph = JointGraph.of(joints)
     return _Scheme(graph, letters, max(driver, default=0)).figure()

@@ -36,7 +36,7 @@ def json_of(data: bytes, source: str) -> Any:
     Raises
     ------
     BadInput
-        They are no JSON, are nested too deep, or hold a number or a text that no file of ours does.
+        They are not JSON, are nested too deep, or hold a number or a text that no file of ours does.
     """
     try:
         text = data.decode("utf-8-sig")

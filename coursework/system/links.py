@@ -16,7 +16,7 @@ LEADS_OUT = Message("a link that leads out of the folder is not followed")
 
 
 class LeadsOut(OSError):
-    """Error of a path below a folder that leads out of it, or to something that is no file."""
+    """Error of a path below a folder that leads out of it, or to something that is not a file."""
 
     def __init__(self) -> None:
         super().__init__(None, LEADS_OUT)
@@ -69,7 +69,7 @@ def open_inside(path: Path, folder: Path) -> BufferedReader:
     Raises
     ------
     LeadsOut
-        It leads out of the folder, or is no file.
+        It leads out of the folder, or is not a file.
     OSError
         It cannot be opened.
     """

@@ -75,7 +75,7 @@ def workers(tasks: int, worth: int = 0) -> int:
     """Return the number of processes for a number of tasks: one per processor, or 1 (this process) if there
     are fewer tasks than ``worth`` or if others cannot start.
 
-    A new process imports the main script of this one; a script from standard input is no file.
+    A new process imports the main script of this one; a script from standard input is not a file.
     """
     if is_shared():
         return _at_once(2)

@@ -80,7 +80,7 @@ def table_of(source: str, source_name: str) -> dict[str, Any]:
     Raises
     ------
     BadInput
-        The text is no TOML, or too large, nested too deep, or has a number of more than 64 bits.
+        The text is not TOML, or too large, nested too deep, or has a number of more than 64 bits.
     """
     if len(source) > _LARGEST:
         raise BadInput(

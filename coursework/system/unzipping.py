@@ -53,7 +53,7 @@ def unpack(archive: Path, folder: Path, limits: ArchiveLimits = USUAL) -> list[P
     Raises
     ------
     BadInput
-        The file is no archive, is encrypted, names a path outside the folder, or exceeds the limits;
+        The file is not an archive, is encrypted, names a path outside the folder, or exceeds the limits;
         unpacking stops there.
     """
     written: list[Path] = []

@@ -116,7 +116,8 @@ def test_a_step_may_be_told_after_others(small_course):
 def test_a_step_that_is_told_after_what_is_no_quantity_is_refused(small_course):
     exercise = v_told_after(small_course, "yy", "x")
     with pytest.raises(
-        BadCourse, match=r"crank_pin\.py: v is explained after 'yy', which is no quantity; did you mean 'y'"
+        BadCourse,
+        match=r"crank_pin\.py: v is explained after 'yy', which is not a quantity; did you mean 'y'",
     ):
         exercise.solution  # noqa: B018
 

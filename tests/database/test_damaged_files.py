@@ -82,7 +82,7 @@ def test_a_damaged_file_is_told_in_a_line(whole, tmp_path, count):
 
 
 def test_tables_whose_names_are_damaged_are_told_in_a_line(whole, tmp_path):
-    """SQLite quotes what it does not understand, which then is no text."""
+    """SQLite quotes what it does not understand, which then is not a text."""
     file = tmp_path / "marks.db"
     file.write_bytes(whole.replace(b"FOREIGN KEY(submission_id)", b"FOREIGN KEY(\x86ubmission_id)"))
     with pytest.raises(BadInput, match="damaged"):

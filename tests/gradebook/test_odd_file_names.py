@@ -47,8 +47,8 @@ def issued(small_course, tmp_path):
 
 
 def hand_in(tmp_path, record):
-    """Files of every kind: a CSV, JSON, a notebook in a folder of Moodle's and one by itself, what is no file
-    of answers."""
+    """Files of every kind: a CSV, JSON, a notebook in a folder of Moodle's and one by itself, what is not a
+    file of answers."""
     place = os.path.join(os.fsencode(tmp_path), b"in")
     part, seed = record["parts"][0]["id"], record["seed"]
     about = {"exercise": "crank_pin", "seed": seed, "student": ""}

@@ -265,7 +265,9 @@ def test_sheets_leave_room_and_say_the_rule(built):
     assert "autocorrect" not in page.partition("<textarea")[2].partition(">")[0], (
         "prose is helped as it is typed"
     )
-    assert page.count('type="checkbox"') == 4 + 1, "one says that none is right: nothing ticked is no answer"
+    assert page.count('type="checkbox"') == 4 + 1, (
+        "one says that none is right: nothing ticked is not an answer"
+    )
     assert read_choices(re.search(r'value="(none)"> none of them', page)[1], {"a": ("one",)}).values == (
         frozenset(),
     )

@@ -1,4 +1,4 @@
-"""Words beside numbers are read; what is no answer is none; what may be two things waits. One table a
+"""Words beside numbers are read; what is not an answer is none; what may be two things waits. One table a
 promise."""
 
 import math

@@ -295,7 +295,7 @@ def test_a_resubmission_is_marked_alone(autograder):
     "files",
     [
         {},
-        {"week3.ipynb": "this is no notebook"},
+        {"week3.ipynb": "this is not a notebook"},
         {"week3.ipynb": "[" * 100_000},
         {"week3.ipynb": b"\xff\xfe\x00"},
         {"answers.csv": ""},

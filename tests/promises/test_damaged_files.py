@@ -255,7 +255,7 @@ ISSUED = {
         "is not JSON: a number of 5000 digits, 999",
     ),
     "an infinite seed": (changed((*RECORD, "seed"), "1e999"), "is not JSON: a number too great, 1e999"),
-    "a seed that is no number": (
+    "a seed that is not a number": (
         changed((*RECORD, "seed"), "NaN"),
         "is not JSON: a number that is none, NaN",
     ),

@@ -319,7 +319,7 @@ OWN = {"scanning/digits.npz"}
 
 
 def test_no_other_file_was_brought():
-    """A library is compressed, a font or a program is no text; what we wrote has short lines."""
+    """A library is compressed, a font or a program is not a text; what we wrote has short lines."""
     named = {a["file"] for a in tomllib.loads((PACKAGE / "third_party.toml").read_text("utf-8"))["asset"]}
     found = set()
     for path in [*PACKAGE.rglob("*"), *(ROOT / "templates").rglob("*")]:

@@ -1,4 +1,4 @@
-"""Files of scans: their pages in order, whatever the format, and what is no picture said by name."""
+"""Files of scans: their pages in order, whatever the format, and what is not a picture said by name."""
 
 import cv2
 import numpy as np

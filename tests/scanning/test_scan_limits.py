@@ -72,7 +72,7 @@ def test_a_page_of_no_paper_is_refused_by_name_and_not_taken_for_a_blank_one(siz
 
 @pytest.mark.e2e
 def test_a_page_that_takes_for_ever_to_be_drawn_is_ended(tmp_path, monkeypatch):
-    """What is no picture of a scanner is drawn in a process of its own, which is ended."""
+    """What is not a picture of a scanner is drawn in a process of its own, which is ended."""
     path = tmp_path / "lines.pdf"
     lines = b" ".join(b"0 0 m %d 842 l 595 %d l S" % (k % 595, k % 842) for k in range(200))
     path.write_bytes(pdf(1, content=lines))

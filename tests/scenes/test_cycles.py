@@ -217,7 +217,7 @@ def test_a_crank_angle_that_is_an_answer_is_shown_and_the_assembly_kept():
 def test_a_driver_angle_that_nothing_says_is_a_fault_of_the_course():
     exercise = CourseExercise("quick_return", COURSE.folder, COURSE, Variant)
     exercise.spec = replace(exercise.spec, driver=replace(exercise.spec.driver, poses=None))
-    with pytest.raises(BadCourse, match="theta2 is no given quantity"):
+    with pytest.raises(BadCourse, match="theta2 is not a given quantity"):
         exercise.variant(0).animation().svg()
 
 

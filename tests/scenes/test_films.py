@@ -101,7 +101,7 @@ def test_a_film_of_no_turns_is_refused(small_course, turns):
 @pytest.mark.parametrize(
     ("right", "wrong", "told"),
     [
-        ('speed="omega"', 'speed="omga"', "speed='omga' is no given quantity"),
+        ('speed="omega"', 'speed="omga"', "speed='omga' is not a given quantity"),
         ("FILM = Film(_turning", "FILM = Film(lambda: None", "figure gives a Figure"),
         ("2.3", "'2.3'", "turns gives a number"),
         ("2.3", "1e9", "turns gives a number above 0, at most"),

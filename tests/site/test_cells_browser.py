@@ -55,7 +55,7 @@ def test_without_a_script_the_boxes_are_joined_and_filled_again(window):
 
 @pytest.mark.parametrize(("exercise", "lang"), [("joint_twist", "en"), ("velocity_polygon", "fr")])
 def test_in_the_tree_for_screen_readers_each_box_and_button_has_a_name_of_its_own(window, exercise, lang):
-    """In Chromium's own tree, where a formula in a label is no name."""
+    """In Chromium's own tree, where a formula in a label is not a name."""
     page = window(ZOE, lang=lang)
     page.goto(page.url.replace("/joint_twist/", f"/{exercise}/"))
     tree = page.context.new_cdp_session(page).send("Accessibility.getFullAXTree")["nodes"]

@@ -11,7 +11,7 @@ from site_own_course import OwnCourse
 from site_people import TEACHER, ZOE
 from sqlalchemy import select
 
-from coursework.database.tables import dealt, variant
+from coursework.database.tables import issue, variant
 
 pytestmark = pytest.mark.e2e
 
@@ -165,7 +165,7 @@ def test_from_nothing_to_a_mark_by_touch(desk, window):
     with page.expect_navigation():
         page.tap("form[action$='/publish'] button.main")
     student = window(f"/assignments/{number}", name=ZOE, lang="fr", is_mobile=True)
-    whose = select(variant.c.record).join(dealt).where(dealt.c.person_id == desk[0].ids[ZOE])
+    whose = select(variant.c.record).join(issue).where(issue.c.person_id == desk[0].ids[ZOE])
     with desk[0].site.store.reading() as connection:
         record = connection.execute(whose).scalar()
     answers = desk[0].site.course["pompe_a_piston"].from_record(record).solution()

@@ -154,7 +154,7 @@ class Construction:
         for stage, count in zip(self.polygon.stages, drawn.counts, strict=True):
             text = self._stage_text(stage)
             if stage.kind == "result" and steps:
-                # Vectors that join points already found are no step of their own.
+                # Vectors that join points already found are not a step of their own.
                 text = f"{steps.pop().text} {text}"
             steps.append(ConstructionStep(len(steps) + 1, text, full.beginning(count)))
         return tuple(steps)

@@ -19,7 +19,7 @@ from coursework.messages import Message
 from coursework.system.links import check_inside
 from coursework.system.tables import as_written, delimiter_of, duplicate_column, open_csv
 
-MOST_POINTS = 1e9  #: more is no number of points
+MOST_POINTS = 1e9  #: more is not a number of points
 
 _MARKS = ("student", "exercise", "part", "verdict", "points", "out_of")
 _REJECTED = ("source", "reason")
@@ -176,7 +176,7 @@ def unlike_summary(folder: Path, marks: Marks) -> list[str]:
     results = dict(zip(marks.students, sums.tolist(), strict=True))
     text = list(_lines(path, ("student", "points", "out_of"), _Decimals()))
     unlike = {name for name, points, _ in text if abs(results[name] - points) > 1e-5 * max(1.0, points)}
-    if unlike:  # points of a bonus are no points of a question
+    if unlike:  # points of a bonus are not points of a question
         results = dict.fromkeys(unlike, 0.0)
         for name, _, _, _, points, _ in _counting(folder, _Decimals()):
             if name in unlike:

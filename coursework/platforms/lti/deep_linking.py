@@ -119,7 +119,7 @@ def _points(form: Form) -> float | None:
     except ValueError:
         points = math.nan
     if not 0 < points <= _MOST_POINTS:
-        raise LTIRefusal("no_question", 400, "points are no number above 0")
+        raise LTIRefusal("no_question", 400, "points are not a number above 0")
     return points
 
 

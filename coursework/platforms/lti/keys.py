@@ -44,7 +44,7 @@ class SigningKey:
         Raises
         ------
         BadInput
-            The file cannot be read, is no RSA key, or others than its owner may read it.
+            The file cannot be read, is not an RSA key, or others than its owner may read it.
         """
         if os.name == "posix" and self.path.stat().st_mode & 0o077:
             raise BadInput("others may read the private key {file}: chmod 600 {file}", file=self.path)

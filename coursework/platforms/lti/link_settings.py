@@ -89,5 +89,5 @@ def tries_of(text: str) -> int | None:
     if not text.strip():
         return None
     if not text.strip().isdecimal() or len(text) > 20 or not 1 <= int(text) <= _MOST_TRIES:
-        raise LTIRefusal("no_question", 400, "tries are no whole number")
+        raise LTIRefusal("no_question", 400, "tries are not a whole number")
     return int(text)

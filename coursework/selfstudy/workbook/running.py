@@ -188,7 +188,7 @@ class CellSession:
         Raises
         ------
         BadCourse
-            It is no Python, it raises, it ends Python, or it prints what no book could; the message has the
+            It is not Python, it raises, it ends Python, or it prints what no book could; the message has the
             line of the lesson.
         """
         printed = io.StringIO()
@@ -216,7 +216,7 @@ class CellSession:
     def _message(self, fault: BaseException, cell: CodeCell) -> str:
         """Return a fault as one line."""
         if isinstance(fault, SyntaxError) and fault.filename == self._file:
-            return f"{self._file}, line {fault.lineno}: the cell is no Python: {fault.msg}"
+            return f"{self._file}, line {fault.lineno}: the cell is not Python: {fault.msg}"
         location = f"{self._file}, line {self._line(fault, cell)}"
         if isinstance(fault, SystemExit):
             return f"{location}: the cell ends Python; a lesson's cells run to their last line"

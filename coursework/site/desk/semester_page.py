@@ -115,7 +115,7 @@ def _query(request: Request) -> str:
 
 
 def _table(request: Request) -> SemesterTable:
-    """Return the semester that the query states. Raises BadInput: a weight is no number."""
+    """Return the semester that the query states. Raises BadInput: a weight is not a number."""
     absence = request.query_params.get(_ABSENT, semester.WORTH[0])
     group = group_key(request.query_params.get(CLASS_GROUP, ""))
     with request.site.store.reading() as connection:

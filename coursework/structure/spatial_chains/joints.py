@@ -263,8 +263,8 @@ def joint_of(given: Mapping[str, Any]) -> Joint:
     UnknownName
         No joint has this name.
     WrongValue
-        A key is missing, a vector is no vector or has no direction, or the line and the normal of a contact
-        are not perpendicular.
+        A key is missing, a vector is not a vector or has no direction, or the line and the normal of a
+        contact are not perpendicular.
     """
     if not isinstance(given, Mapping) or "joint" not in given:
         raise WrongValue("a joint is a mapping with a key 'joint'; found {given!r}", given=str(given)[:80])

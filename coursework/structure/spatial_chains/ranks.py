@@ -10,7 +10,7 @@ from coursework.errors import CannotTell
 from coursework.messages import Message
 
 ZERO = 1e-11  #: what rounding leaves of a zero, relative to the largest; with it, what is smaller
-DISTINCT = 1e-7  #: what surely is no zero; two axes 1e-4 apart stay well above it
+DISTINCT = 1e-7  #: what surely is not zero; two axes 1e-4 apart stay well above it
 
 
 @dataclass(frozen=True)

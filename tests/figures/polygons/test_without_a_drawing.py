@@ -17,7 +17,7 @@ def answers(variant, points):
 
 
 def read_off(variant, given):
-    """The points earned by what is judged with the drawing and is no point of it, and what they are out
+    """The points earned by what is judged with the drawing and is not a point of it, and what they are out
     of."""
     marking = variant.grade(given)
     parts = [p for p in variant.parts if p.judge == "drawing" and p.kind != "point"]

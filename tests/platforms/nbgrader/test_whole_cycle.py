@@ -140,7 +140,7 @@ def classroom(tmp_path_factory):
         "gil": ({}, of_seed(answered(book, keyed(variant, right)), record["seed"] + 1)),
         "hal": ({}, of_exercise(answered(book, keyed(variant, right)), "grashof")),
         "ivy": ({}, in_answers(book, f"open({str(marker)!r}, 'w')\nanswers = dict(rA=abs(-1))")),
-        "joy": ({}, "this is no notebook"),
+        "joy": ({}, "this is not a notebook"),
         "kim": (right, forged(answered(book, keyed(variant, right)), marker)),
     }
     for student, (_, handed) in theirs.items():

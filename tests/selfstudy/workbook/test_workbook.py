@@ -442,7 +442,7 @@ def test_a_book_prints_no_variant_that_a_class_is_given(small):
         ("![A rod that turns]", "![]", "line 43: the figure turning_rod has no caption"),
         ("level=2", "level=9", "line 27: a worked example has a level from 0"),
         ("x = 41 + 1", "x = 41 + y", "line 35: NameError"),
-        ("x = 41 + 1", "x = 41 +", "line 35: the cell is no Python: invalid syntax"),
+        ("x = 41 + 1", "x = 41 +", "line 35: the cell is not Python: invalid syntax"),
         ("x = 41 + 1", "raise SystemExit", "line 35: the cell ends Python"),
         ("x = 41 + 1", "x = object()", "line 35: the cell shows '<object object at 0x"),
         ("x = 41 + 1", "import os; x = os.getcwd()", "line 35: the cell shows "),
