@@ -222,7 +222,7 @@ def tell_dry_run(
     paper = "letter" if "letter" in formats else "a4"
     report = dry_run(course, issued.issues, assignment, paper=paper, scan="scan" in formats)
     say(
-        "{papers}, {each} each: {pages} in all, {sheets} sheets of paper{measured}",
+        "{papers}, {each} each: {pages} in all, {sheets} sheet{sheets:|s} of paper{measured}",
         papers=counted(report.papers, "paper"),
         each=_range(min(report.pages), max(report.pages), "page"),
         pages=counted(report.total_pages, "page"),

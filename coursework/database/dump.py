@@ -124,7 +124,7 @@ def restore(folder: Path, store: Store) -> dict[str, int]:
             rows[table.name] = _read(connection, table, path, cell_text)
             if rows[table.name] != counted.get(table.name, 0):
                 raise BadInput(
-                    "{file} has {rows} rows, and the dump had {expected}",
+                    "{file} has {rows} row{rows:|s}, and the dump had {expected}",
                     file=path,
                     rows=rows[table.name],
                     expected=counted.get(table.name, 0),
@@ -246,7 +246,7 @@ def _row(
 ) -> dict[str, Any]:
     if len(cells) != len(names):
         raise BadInput(
-            "{file}, line {line}: {cells} cells where the header has {most}",
+            "{file}, line {line}: {cells} cell{cells:|s} where the header has {most}",
             file=path,
             line=line,
             cells=len(cells),

@@ -171,7 +171,7 @@ def _table(path: Path) -> Iterator[tuple[int, Mapping[str, str]]]:
             )
         if len(row) < len(header):
             raise BadInput(
-                "{file}, line {line}: {cells} cells where the header has {most}",
+                "{file}, line {line}: {cells} cell{cells:|s} where the header has {most}",
                 file=path,
                 line=number,
                 cells=len(row),

@@ -77,7 +77,7 @@ def fill(
             result.absent.append(name)
         elif sheet.column >= len(row):
             raise BadInput(
-                "{file}: the line of {name} has only {cells} cells, so none for {column}",
+                "{file}: the line of {name} has only {cells} cell{cells:|s}, so none for {column}",
                 file=template,
                 name=name,
                 cells=len(row),

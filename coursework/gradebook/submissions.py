@@ -378,7 +378,9 @@ def _csv_row(
     row = dict(zip(header, cells, strict=False))
     if len(cells) != len(header):
         cells_read = {c: row.get(c, "") for c in COLUMNS}
-        reason = Message("{cells} cells where the header has {most}", cells=len(cells), most=len(header))
+        reason = Message(
+            "{cells} cell{cells:|s} where the header has {most}", cells=len(cells), most=len(header)
+        )
         if delimiter == "," and len(cells) > len(header):
             cells_read["answer"] = joined["answer"]
             reason = Message(

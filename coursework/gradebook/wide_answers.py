@@ -54,7 +54,9 @@ def read_wide(
     for location, cells in rows:
         cells = [as_written(cell).strip() for cell in cells]
         if any(cells[len(header) :]):
-            reason = Message("{cells} cells where the header has {most}", cells=len(cells), most=len(header))
+            reason = Message(
+                "{cells} cell{cells:|s} where the header has {most}", cells=len(cells), most=len(header)
+            )
             yield Rejected(location, reason, {"student": cells[columns.student or 0]})
             continue
         cells += [""] * (len(header) - len(cells))

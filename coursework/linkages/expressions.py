@@ -387,7 +387,9 @@ class ExpressionReader:
             case ast.Call(func=ast.Name(id=name), args=arguments, keywords=[]) if name in FUNCTIONS:
                 if len(arguments) != _ARGUMENTS.get(name, 1):
                     raise WrongValue(
-                        Message("{name} takes {count} values", name=name, count=_ARGUMENTS.get(name, 1))
+                        Message(
+                            "{name} takes {count} value{count:|s}", name=name, count=_ARGUMENTS.get(name, 1)
+                        )
                     )
                 return _called(name, [self._of(a, literals) for a in arguments])
         raise WrongValue(

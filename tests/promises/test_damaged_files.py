@@ -315,7 +315,7 @@ ROWS = {
     ): "out_of of Ana must be a number; found 'inf'",
     ("dump, person.csv", lambda data: data.replace(b"Ben", b"B\xe9n", 1)): "person.csv is not UTF-8",
     ("dump, person.csv", lambda data: data + data.splitlines(True)[-1]): "person.csv is damaged",
-    ("dump, person.csv", lambda data: data + b"1\r\n"): "person.csv, line 5: 1 cells where the header has",
+    ("dump, person.csv", lambda data: data + b"1\r\n"): "person.csv, line 5: 1 cell where the header has",
     (
         "dump, person.csv",
         lambda data: data.replace(b"\n1,", b"\n" + b"9" * 5000 + b","),
