@@ -262,10 +262,10 @@ class Judged:
     """Judgement of one answer.
 
     ``share``, 0 to 1, is the part of the points that it earns; ``mistake`` the named mistake that it shows,
-    if any; ``found`` what follows from the student's own answers, by quantity, in canonical units: it is
-    told. ``also``: other named mistakes that explain the same answer. ``follows``: the answer is not the
-    expected one, but right from an earlier answer of the student that is wrong. ``slip``: what is missed that
-    the engine tells, such as ``not_drawn``; its price is that of the course.
+    if any; ``found`` what follows from the student's own answers, by quantity, in canonical units: the
+    message names it. ``also``: other named mistakes that explain the same answer. ``follows``: the answer is
+    not the expected one, but right from an earlier answer of the student that is wrong. ``slip``: what is
+    missed that the engine tells, such as ``not_drawn``; its price is that of the course.
     """
 
     share: float = 1.0

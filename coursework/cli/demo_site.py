@@ -89,8 +89,8 @@ def _issue(
     course: Course[Any], store: Store, assignment: Assignment, students: list[Student]
 ) -> tuple[int, dict[str, Any]]:
     spoken = [_in_language(course, student) for student in students]
-    dealt = assign_variants(course, assignment, spoken, course.folder.languages[:1])
-    content = issued_content(dealt.issues, assignment)
+    assigned = assign_variants(course, assignment, spoken, course.folder.languages[:1])
+    content = issued_content(assigned.issues, assignment)
     with store.begin() as connection:
         return put_issued(connection, content, course=course.folder.root.name), content
 

@@ -259,9 +259,9 @@ def _as_built(course: Course[Any], wanted: _Wanted, students: Sequence[Student])
             ),
             exercises=wanted.exercises[0],
         )
-    dealt = assign_variants(course, assignment, students or [Student("") for _ in range(count)], langs)
-    print_notes(dealt.notes)
-    return json_text(issued_content(dealt.issues, assignment)).encode("utf-8")
+    assigned = assign_variants(course, assignment, students or [Student("") for _ in range(count)], langs)
+    print_notes(assigned.notes)
+    return json_text(issued_content(assigned.issues, assignment)).encode("utf-8")
 
 
 def _drawn(course: Course[Any], wanted: _Wanted, students: Sequence[Student], out: Path) -> DrawnPool:
