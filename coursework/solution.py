@@ -555,7 +555,7 @@ def _check_explained_after(source: str, graph: Graph) -> None:
         for before in graph.node(name).explained_after:
             if before not in graph.quantities:
                 raise BadCourse(
-                    f"{source}: {name} is explained after {before!r}, which is no "
+                    f"{source}: {name} is explained after {before!r}, which is not a "
                     f"quantity{nearest(before, graph.quantities)}"
                 )
 

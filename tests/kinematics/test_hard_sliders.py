@@ -38,7 +38,7 @@ def test_the_smooth_policy_at_equal_lengths_moves_as_twice_the_cosine_through_ev
         (found.jerk, 2 * turned.sin),
     ):
         assert abs(quantity - expected).max() < 8 * EPS
-    with pytest.raises(Undefined, match="square"):
+    with pytest.raises(Undefined, match="perpendicular"):
         SliderCrank(1.0, 1.0).motion(Degrees(90), order=1)
 
 
