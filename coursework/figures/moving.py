@@ -36,7 +36,7 @@ from coursework.figures.ink import (
     pair,
     turn,
 )
-from coursework.figures.marks import centre_line, line, rotation_arrow
+from coursework.figures.marks import centre_line, dimension, line, rotation_arrow
 from coursework.figures.paper import FigurePaper
 from coursework.figures.placing import LabelRequest
 from coursework.figures.riding import ride
@@ -253,7 +253,7 @@ def _by_kind(elements: Sequence[Element]) -> Mapping[tuple, Element]:
 
 def _settled(frames: list[list[Element]]) -> list[list[Element]]:
     """Return the elements with those on the frame at rest: guides and axes at full length, one sense of
-    rotation."""
+    rotation, dimensions between fixed lines where they are out of the way."""
     columns = [_settled_one(column) for column in zip(*frames, strict=True)]
     return [list(row) for row in zip(*columns, strict=True)]
 
@@ -266,7 +266,21 @@ def _settled_one(column: tuple[Element, ...]) -> tuple[Element, ...]:
         return (first,) * len(column)
     if isinstance(first, rail | centre_line) or (isinstance(first, line) and not first.label):
         return _on_one_line(column)
+    if isinstance(first, dimension) and first.offset == 0 and _shift_across(column):
+        return (max(column, key=lambda e: abs(e.p + e.q)),) * len(column)
     return column
+
+
+def _shift_across(column: tuple) -> bool:
+    """Return True if a dimension keeps its length and direction and moves across them, as that between two
+    fixed lines does."""
+    along = column[0].q - column[0].p
+    size = max(abs(e.p - column[0].p) for e in column)
+    return all(
+        abs(e.q - e.p - along) <= 1e-9 * abs(along)
+        and abs(((e.p - column[0].p) * along.conjugate()).real) <= 1e-6 * size * abs(along)
+        for e in column
+    )
 
 
 def _on_one_line(column: tuple) -> tuple:

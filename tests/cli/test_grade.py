@@ -66,7 +66,7 @@ def test_every_damaged_row_is_reported_and_nothing_else_is_lost(built, cli, tmp_
         "did you mean 'slotted_mechanism'",
         "no student's name",
         "repeats",
-        "1 cells",
+        "1 cell ",
         "not a notebook",
     ):
         assert told in reasons

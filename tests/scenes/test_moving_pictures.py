@@ -195,6 +195,18 @@ def test_guides_stand_still_and_a_sense_of_rotation_does_not_jump():
     assert np.ptp(guide.numbers[0, 0::2]) == pytest.approx(30 * shown.scale)
 
 
+@pytest.mark.parametrize(("top", "stands"), [(10j, True), (3 + 10j, False)])
+def test_the_distance_of_two_fixed_lines_stands_where_the_piston_does_not_reach(top, stands):
+    """That of two points of a body goes with it."""
+    frames = [(link(0, x), dimension(x, x + top, "e", offset=0)) for x in (40.0, 60.0, 50.0)]
+    shown = drawing(frames)
+    assert (sum(t.moves for t in shown.tracks) == 1) is stands  # the link alone
+    still = [t for t in shown.tracks if not t.moves and not t.mark]
+    assert {round((x + shown.corner.real) / shown.scale) for t in still for x in t.numbers[0, 0::2]} == (
+        {60} if stands else set()
+    )
+
+
 def test_an_element_that_is_not_always_there_is_left_out():
     frames = [(link(0, 50), pin(50, "A")), (link(0, 50j),), (link(0, -50), pin(-50, "A"))]
     assert len(drawing(frames).tracks) == 1
