@@ -47,7 +47,7 @@ def list_exercises(context: click.Context, as_json: bool) -> int:
             in_chapter = [r for r in rows if r["chapter"] == (chapter and chapter.number)]
             print_table(
                 [_row(r) for r in in_chapter],
-                f"{chapter.number}. {_titled(folder, chapter)}" if chapter else "",
+                f"{chapter.label}. {_titled(folder, chapter)}" if chapter else "",
             )
         if not folder.names:
             say("This course has no exercise yet.")

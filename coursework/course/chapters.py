@@ -60,6 +60,11 @@ class Chapter:
     sections: tuple[ChapterSection, ...]
     appendix: str = ""  #: its letter, where it is one
 
+    @property
+    def label(self) -> str:
+        """Its number, or the letter of an appendix."""
+        return self.appendix or str(self.number)
+
     def title(self, lang: str) -> str:
         """Its title, in another language where it has none in this."""
         return self.titles.get(lang) or next(iter(self.titles.values()))

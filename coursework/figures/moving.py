@@ -267,8 +267,13 @@ def _settled_one(column: tuple[Element, ...]) -> tuple[Element, ...]:
     if isinstance(first, rail | centre_line) or (isinstance(first, line) and not first.label):
         return _on_one_line(column)
     if isinstance(first, dimension) and first.offset == 0 and _shift_across(column):
-        return (max(column, key=lambda e: abs(e.p + e.q)),) * len(column)
+        return _farthest(column)
     return column
+
+
+def _farthest(column: tuple) -> tuple:
+    """Return the dimension that is farthest from the origin, at every instant."""
+    return (max(column, key=lambda e: abs(e.p + e.q)),) * len(column)
 
 
 def _shift_across(column: tuple) -> bool:

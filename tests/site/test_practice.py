@@ -35,6 +35,7 @@ def entries(class_, name=ZOE):
 def test_the_course_stands_in_its_order(class_of_three, course):
     page = class_of_three.browser(ZOE).get("/practice").text
     assert tuple(re.findall(r'<li class="new"><a href="/practice/(\w+)">', page)) == course.folder.in_order
+    assert re.findall(r"<h3>(\w+)\. ", page) == [*map(str, range(1, len(course.folder.chapters))), "A"]
 
 
 def test_what_is_said_of_a_question_leads_to_the_lesson_that_teaches_it(zoe):

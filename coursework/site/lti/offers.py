@@ -49,7 +49,7 @@ def _worth(connection: Connection, number: int) -> float:
 def _exercise_offers(course: Course[Any], lang: str) -> list[OfferGroup]:
     texts, folder = words(lang)["lti"]["pick"], course.folder
     placed = {name for chapter in folder.chapters for name in chapter.exercises}
-    named = [(f"{chapter.number}. {chapter.title(lang)}", chapter.exercises) for chapter in folder.chapters]
+    named = [(f"{chapter.label}. {chapter.title(lang)}", chapter.exercises) for chapter in folder.chapters]
     others = tuple(name for name in folder.names if name not in placed)
     named.append((texts["others"] if placed else folder.title(lang), others))
     return [

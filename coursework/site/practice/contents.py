@@ -59,6 +59,7 @@ class ChapterEntry(NamedTuple):
     """Chapter with its groups of exercises."""
 
     number: int
+    label: str  #: the number, or the letter of an appendix
     title: str
     groups: tuple[LessonGroup, ...]
     figure: Markup = Markup("")  #: a mechanism of the chapter, small
@@ -114,6 +115,7 @@ def _titles(site: Site, lang: str) -> tuple[ChapterEntry, ...]:
     return tuple(
         ChapterEntry(
             chapter.number,
+            chapter.label,
             chapter.title(lang),
             tuple(_group(site, s, lang) for s in chapter.sections),
             _figure(site, chapter),

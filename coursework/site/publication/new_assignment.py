@@ -340,7 +340,7 @@ def _exercise_groups(course: Course[Any], lang: str) -> Iterator[ExerciseGroup]:
     for chapter in folder.chapters:
         placed |= set(chapter.exercises)
         yield ExerciseGroup(
-            f"{chapter.number}. {chapter.title(lang)}", _titled(course, chapter.exercises, lang)
+            f"{chapter.label}. {chapter.title(lang)}", _titled(course, chapter.exercises, lang)
         )
     rest = [name for name in folder.names if name not in placed]
     yield ExerciseGroup(words(lang, "site")["publishing"]["rest"], _titled(course, rest, lang))
