@@ -12,8 +12,7 @@ is needed first.
     exercises = ["circles", { name = "linkage", needs = ["bars"] }]
 
 A section has a lesson, whose title it bears, or a ``title`` of its own, or neither. ``appendix = true`` makes
-a chapter an appendix of the book. Whatever is needed first
-stands earlier.
+a chapter an appendix of the book. Whatever is needed first stands earlier.
 """
 
 from __future__ import annotations

@@ -1,9 +1,9 @@
 """A course carried to other machines, whose processes have the package and nothing of the folder.
 
 The folder is sent once, by its content: a process unpacks it in a folder of its own that the digest names, so
-that two courses, or two states of one, stand side by side. Paths in it are relative to them: a text or a path
-in the course's folder is, in the process, the same place of the unpacked one, and back, so that what comes
-back says what it would say here.
+that two courses, or two states of one, stand side by side. Paths are relative to that folder: a text or a
+path in the course's folder is, in the process, the same place of the unpacked one, and back, so that what
+comes back says what it would say here.
 """
 
 from __future__ import annotations

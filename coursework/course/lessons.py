@@ -111,8 +111,8 @@ def taught_by(folder: Folder, exercise: str, lang: str) -> tuple[Lesson, ...]:
 
     ``crank_pin = { lesson = "rods", sections = [8] }``, or a list of these; a bare ``"rods"`` is a whole
     lesson. Sections are named by the numbers of their headings. Of several lessons the first helps with each
-    question that no other names by ``parts = ["r4"]``. A lesson that is not written in the
-    language is left out.
+    question that no other names by ``parts = ["r4"]``. A lesson that is not written in the language is left
+    out.
 
     Raises
     ------

@@ -55,8 +55,8 @@ def complete_tables(connection: Connection) -> None:
 
 
 def _rename(connection: Connection) -> None:
-    """Give the tables and columns of an earlier version their present names, and drop indexes named after
-    them."""
+    """Give the tables and columns of an earlier version their present names, and drop the indexes of its own
+    that bear the earlier ones."""
     for old, new in _RENAMED_TABLES.items():
         if inspect(connection).has_table(old):
             connection.exec_driver_sql(f"ALTER TABLE {old} RENAME TO {new}")
@@ -67,9 +67,9 @@ def _rename(connection: Connection) -> None:
         for column in inspector.get_columns(table):
             if name := renamed.get(column["name"]):
                 connection.exec_driver_sql(f"ALTER TABLE {table} RENAME COLUMN {column['name']} TO {name}")
-        known = {index.name for index in METADATA.tables[table].indexes}
         for index in inspector.get_indexes(table):
-            if index["name"] not in known and "duplicates_constraint" not in index:
+            is_named_so = _RENAMED_TABLES.keys() & set(str(index["name"]).split("_"))
+            if is_named_so and "duplicates_constraint" not in index:
                 connection.exec_driver_sql(f"DROP INDEX {index['name']}")
 
 

@@ -423,8 +423,8 @@ def polygon_row(row: SideRow, lang: str) -> str:
 
 
 def _row(lang: str, *cells: tuple[str, float]) -> str:
-    """Return the height of a row of cells, each of Markdown and so many mm wide: where all are surely on one
-    line that it is given, since the typesetter would set the row twice to find it."""
+    """Return the height of a row of cells, each of Markdown and so many mm wide; ``auto`` unless all are
+    surely on one line, since the typesetter sets a row twice to find its height."""
     if not all(_is_low(text) and _surely_fits(text, wide, lang) for text, wide in cells):
         return "auto"
     return f"{_ROW_WITH_ARROW if any(_ARROW.search(text) for text, _ in cells) else _ROW}mm"

@@ -53,7 +53,8 @@ class Parameter:
 
     def is_beyond(self, text: str) -> bool:
         """Return True if a text states a number beyond the bounds, of which the nearer is taken."""
-        return self.value(text) in (self.low, self.high) and typed_number(text[:_LONGEST]) != self.value(text)
+        number = typed_number(text[:_LONGEST])
+        return not self.choices and math.isfinite(number) and not self.low <= number <= self.high
 
 
 _LONGEST = 24  #: letters of a number

@@ -257,16 +257,8 @@ class BookChapter:
     sections: tuple[BookSection, ...]
     summary: tuple[SummaryCard, ...] = ()
     paper: tuple[BookExercise, ...] = ()  #: an examination paper on the chapter
-    appendix: str = ""  #: its letter, where it is one
-
-    @property
-    def label(self) -> str:
-        return self.appendix or str(self.number)
-
-    @property
-    def sort(self) -> str:
-        """Name of the words that name it."""
-        return "appendix" if self.appendix else "chapter"
+    label: str = ""  #: its number, or the letter of an appendix
+    sort: str = "chapter"  #: name of the words that name it: ``chapter`` or ``appendix``
 
     @property
     def paper_points(self) -> float:

@@ -154,7 +154,10 @@ def _chapter(
     lessons = [section.lesson for section in sections if section.lesson]
     cards = tuple(filter(None, (summary_of(course.folder, lesson) for lesson in lessons)))
     paper = _paper(course, chapter, lang, seed) if course.folder.book_place.is_dir() else ()
-    return BookChapter(chapter.number, chapter.title(lang), tuple(sections), cards, paper, chapter.appendix)
+    sort = "appendix" if chapter.appendix else "chapter"
+    return BookChapter(
+        chapter.number, chapter.title(lang), tuple(sections), cards, paper, chapter.label, sort
+    )
 
 
 def _paper(course: Course[Any], chapter: Chapter, lang: str, seed: int) -> tuple[BookExercise, ...]:

@@ -271,8 +271,8 @@ def _origin(row: AnswerRow) -> dict[str, str]:
 
 def _submissions(request: Request, now: ClassState) -> bytes:
     with request.site.store.reading() as connection:
-        rows = [submission._asdict() for submission in submissions_of(connection, now.about.id)]
-    return csv_file(({c: str(row[c]) for c in _SUBMISSIONS} for row in rows), _SUBMISSIONS)
+        rows = submissions_of(connection, now.about.id)
+    return csv_file(({c: str(getattr(row, c)) for c in _SUBMISSIONS} for row in rows), _SUBMISSIONS)
 
 
 def _wide(request: Request, now: ClassState) -> bytes:
