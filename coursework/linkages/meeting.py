@@ -51,14 +51,18 @@ def meeting(
                 found = next((text for key, text in _FOUND.items() if key in values), "")
                 why = Message(found, **{**values, "P": P, "Q": Q, "B": B}) if found else as_message(fault)
                 raise CannotAssemble(
-                    "bodies {bodies} do not meet at {joints}: {problem}",
+                    "bodies {bodies} do not meet at {joints}: {problem}"
+                    if "," in bodies
+                    else "body {bodies} does not reach {joints}: {problem}",
                     bodies=bodies,
                     joints=B,
                     problem=why,
                 ) from fault
             except Undefined as fault:
                 raise Undefined(
-                    "bodies {bodies} at {joints}: {problem}",
+                    "bodies {bodies} at {joints}: {problem}"
+                    if "," in bodies
+                    else "body {bodies} at {joints}: {problem}",
                     bodies=bodies,
                     joints=B,
                     problem=as_message(fault),

@@ -122,6 +122,8 @@ class TableReader(TomlReader):
             if name == "require":
                 continue
             at = ("given", name)
+            if name in ("title", "version"):
+                raise self.refused(at, "{name} is of the file: write it above [given]", name=name)
             if not NAME.match(name):
                 raise self.refused(at, "{name!r} cannot name a quantity: letters, digits, _", name=name)
             results[name] = self._entry(at, name, value)

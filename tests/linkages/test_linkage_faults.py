@@ -13,6 +13,7 @@ from coursework.authoring.linkage_editing import questions
 from coursework.authoring.linkage_files import mechanism_alone
 from coursework.errors import BadCourse, BadInput, CannotAssemble, Starved
 from coursework.linkages.compiled import compiled
+from coursework.linkages.meeting import meeting
 from coursework.messages import localised
 
 TOGGLE = (FOLDER / "exercises" / "toggle.toml").read_text("utf-8")
@@ -104,6 +105,7 @@ FAULTS = [
     ("advantage = true", "advantage = true\npoints = { theta7 = 3 }", 32, "no question 'theta7'"),
     ('r4 = "150 mm"', 'r4 = "-150 mm"', 7, "a length above 0; found '-150 mm'"),
     ('r4 = "150 mm"', 'r4 = ["150 mm", "160 mm"]', 7, '"180 mm", or { from'),
+    ('r4 = "150 mm"', 'r4 = "150 mm"\nversion = 2', 8, "write it above [given]"),
     ('r4 = "150 mm"', "r4 = true", 7, '"180 mm", or { from'),
     ('r4 = "150 mm"', 'r4 = "1e999 mm"', 7, "too large"),
     ('r4 = "150 mm"', 'r4 = "150 mm + x"', 7, "no quantity 'x'"),
@@ -332,6 +334,17 @@ def test_numbers_that_do_not_close_name_the_joint_and_what_is_missing(name, give
             assert re.search(rf"([\d.]+) mm (?:is left at|en) [{joints}]", told)
         else:
             assert float(re.search(missing, told)[1]) == pytest.approx(gap, rel=5e-3)
+
+
+def test_one_body_that_does_not_reach_its_joint_is_named_alone():
+    with pytest.raises(CannotAssemble) as caught:
+        meeting("5", "C", "P", "Q")(_raise)(CannotAssemble("nothing found"))
+    assert localised(caught.value, "en").startswith("body 5 does not reach C: ")
+    assert localised(caught.value, "fr").startswith("la pièce 5 n’atteint pas C")
+
+
+def _raise(fault):
+    raise fault
 
 
 def test_a_changed_file_is_compiled_anew(tmp_path):
