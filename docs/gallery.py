@@ -210,7 +210,7 @@ def _question(question: Question, lang: str) -> str:
 def _given_table(exercise: CourseExercise) -> str:
     rows = []
     for name, spec in exercise.spec.given.items():
-        symbol = to_mathml(exercise.symbol(name), "en")
+        symbol = to_mathml(exercise.symbol(name, "en"), "en")
         rows.append(f"<tr><td>{symbol}</td><td><code>{name}</code></td><td>{_range(spec)}</td></tr>")
     return f"<table>{''.join(rows)}</table>"
 

@@ -155,7 +155,7 @@ def _value(subject: Subject, name: str, value: Any, lang: str) -> str:
     if isinstance(value, str):
         return value
     unit = subject.exercise.units.get(name, "1")
-    return f"${subject.exercise.symbol(name)} = $ {number(value, unit, lang, 6)}"
+    return f"${subject.exercise.symbol(name, lang)} = $ {number(value, unit, lang, 6)}"
 
 
 def place_text(subject: Subject, point: HardPlace, texts: Words, lang: str) -> str:
@@ -165,18 +165,18 @@ def place_text(subject: Subject, point: HardPlace, texts: Words, lang: str) -> s
     if point.tuned:
         tuned = texts["hard_tuned"].format(_value(subject, point.tuned, point.given[point.tuned], lang))
     if point.kind == GROWING:
-        return str(texts["hard_growing"].format(symbol_of(subject.exercise, point.moved)))
+        return str(texts["hard_growing"].format(symbol_of(subject.exercise, point.moved, lang)))
     return texts["hard_place"].format(
-        moved=f"${subject.exercise.symbol(point.moved)}$",
+        moved=f"${subject.exercise.symbol(point.moved, lang)}$",
         value=number(point.given[point.moved], unit, lang, 6),
         tuned=tuned,
-        why=texts["kinds"][point.kind].format(symbol_of(subject.exercise, point.quantity)),
+        why=texts["kinds"][point.kind].format(symbol_of(subject.exercise, point.quantity, lang)),
     )
 
 
-def symbol_of(exercise: CourseExercise, name: str) -> str:
+def symbol_of(exercise: CourseExercise, name: str, lang: str) -> str:
     """Return the symbol of a quantity of the statement or of the solution alone, as inline Markdown."""
-    return f"${exercise.solution_symbol(name)}$"
+    return f"${exercise.solution_symbol(name, lang)}$"
 
 
 def _paragraphs(sentences: Iterable[str]) -> str:

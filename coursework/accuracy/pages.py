@@ -82,7 +82,7 @@ def _digits_table(course: Course, lines: Sequence[OverviewLine], texts: Words, l
             _displayed(line.generic_textbook),
             _displayed(line.hard),
             _displayed(line.hard_textbook, line.hard_textbook_failed),
-            _allowed(course, line, texts),
+            _allowed(course, line, texts, lang),
             _nanoseconds(line.stable_ns),
             _nanoseconds(line.textbook_ns),
         )
@@ -102,7 +102,7 @@ def _displayed(error: float | None, failed: int = 0) -> str:
     return "–" if error is None or failed else str(_digits(error))
 
 
-def _allowed(course: Course, line: OverviewLine, texts: Words) -> str:
+def _allowed(course: Course, line: OverviewLine, texts: Words, lang: str) -> str:
     """Return whether all digits are kept, and otherwise by which quantity they are lost, asked or not."""
     if not line.places:
         return "–"
@@ -112,7 +112,7 @@ def _allowed(course: Course, line: OverviewLine, texts: Words) -> str:
     exercise = course[line.exercise]
     names = line.asked_losing or tuple(line.losing)
     key = "loses" if line.asked_losing else "loses_unasked"
-    return str(texts[key].format(lost, ", ".join(symbol_of(exercise, name) for name in names)))
+    return str(texts[key].format(lost, ", ".join(symbol_of(exercise, name, lang) for name in names)))
 
 
 def _nanoseconds(times: Times | None) -> str:

@@ -368,11 +368,11 @@ def check_symbols(exercise: CourseExercise, report: CheckReport) -> None:
     for name, symbol in exercise.solution.symbols.items():
         # Where the exercise has its own, another form in formulas, a fraction say, is the author's choice.
         stated = name in exercise.spec.symbols
-        if name in on_the_sheet and not stated and symbol != exercise.symbol(name):
+        if name in on_the_sheet and not stated and symbol != exercise.spec.symbol(name):
             report.fail(
                 f"SYMBOLS of {exercise.solution.source} names {name!r}, which is given or asked: its "
                 "symbol belongs "
-                f"in Exercise(symbols=…), else the sheet shows it as {exercise.symbol(name)}"
+                f"in Exercise(symbols=…), else the sheet shows it as {exercise.spec.symbol(name)}"
             )
 
 

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, Generic, Protocol, TypeVar
 import numpy as np
 
 from coursework.course.draws import Draws, Stated
-from coursework.course.folder import Folder
+from coursework.course.folder import MECHANISM, Folder
 from coursework.course.lettering import printed_order
 from coursework.course.records import Records
 from coursework.course.requests import Intake
@@ -23,6 +23,7 @@ from coursework.model import Driver, Exercise, Part
 from coursework.quantities.graph import Graph, plain_scalar
 
 if TYPE_CHECKING:
+    from coursework.course.symbols import Symbols
     from coursework.solution import Film, Solution
 
 USUAL, ALL = "usual", "all"  #: what stands for several parts where parts are named
@@ -104,13 +105,24 @@ class CourseExercise(Generic[V]):
         stated |= {p.quantity: p.unit for p in self.spec.parts}
         return MappingProxyType({**self.solution.units, **stated})
 
-    def symbol(self, name: str) -> str:
-        """LaTeX of a quantity of the statement."""
-        return self.spec.symbol(name)
+    def symbol(self, name: str, lang: str) -> str:
+        """Return LaTeX of a quantity of the statement in a language."""
+        return self.symbols(lang)(self.spec.symbol(name))
 
-    def solution_symbol(self, name: str) -> str:
-        """LaTeX of a quantity of the solution, or else of the statement."""
-        return self.solution.symbols.get(name) or self.symbol(name)
+    def solution_symbol(self, name: str, lang: str) -> str:
+        """Return LaTeX of a quantity of the solution, or else of the statement, in a language."""
+        stated = self.solution.symbols.get(name)
+        return self.symbols(lang)(stated) if stated else self.symbol(name, lang)
+
+    def symbols(self, lang: str) -> Symbols:
+        """Return what a language writes otherwise than the exercise's Python."""
+        return self.folder.symbols(lang, is_mechanism=self._is_mechanism)
+
+    @cached_property
+    def _is_mechanism(self) -> bool:
+        """Return True if a mechanism's file states the exercise."""
+        home = self.folder.home("exercises", self.name)
+        return home is not None and home.suffix == MECHANISM
 
     def plan(
         self, only: Sequence[str] | None = None, *, effects: Iterable[str] | None = None

@@ -21,13 +21,14 @@ from typing import TYPE_CHECKING, Any
 
 from coursework.course.builtin import builtin_root
 from coursework.errors import BadCourse, BadInput, CourseworkError
-from coursework.language.words import languages, no_language
+from coursework.language.words import languages, no_language, words
 from coursework.messages import Message
 from coursework.system.distribution import pip_install
 
 if TYPE_CHECKING:
     from coursework.course.chapters import Chapter, ChapterSection
     from coursework.course.marking_rules import Rules
+    from coursework.course.symbols import Symbols
 
 MECHANISM = ".toml"  #: ending of the file of an exercise that is stated as a mechanism
 DEFAULT_LANGUAGE = "fr"  #: the language of a course that states none, where nobody says another
@@ -66,6 +67,7 @@ class Folder:
         package.__path__ = [str(root)]
         sys.modules[self._package] = package
         self._homes: dict[tuple[str, str], Path] = {}
+        self._symbols: dict[tuple[str, bool], Symbols] = {}
 
     def __repr__(self) -> str:
         return f"<folder {self.root.name}>"
@@ -261,6 +263,25 @@ class Folder:
         from coursework.course.marking_rules import Rules
 
         return Rules.of(self.settings.get("marking", {}), str(self._settings_file))
+
+    def symbols(self, lang: str, *, is_mechanism: bool = False) -> Symbols:
+        """Return what a language writes otherwise than the exercises' Python: ``[symbols.LANG]``.
+
+        ``is_mechanism`` adds what the engine's texts of mechanisms' files write otherwise.
+
+        Raises
+        ------
+        BadCourse
+            A symbol is not a text.
+        """
+        key = lang, is_mechanism
+        if key not in self._symbols:
+            from coursework.course.symbols import Symbols
+
+            usual = words(lang, "linkages")["symbols"] if is_mechanism else {}
+            source = self.relative(self._settings_file)
+            self._symbols[key] = Symbols.of(self.settings, lang, source, usual)
+        return self._symbols[key]
 
     @property
     def study_order(self) -> tuple[str, ...]:

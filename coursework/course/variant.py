@@ -342,10 +342,19 @@ class Variant:
                     f"{self.exercise.name}: figure(…) returns a Figure, a Picture, or a tuple of them; "
                     f"found {str(drawing)[:60]}"
                 )
-        home = Path(function.__code__.co_filename).parent
+        home, symbols = Path(function.__code__.co_filename).parent, self.exercise.symbols(self.lang)
         return tuple(
-            drawing.beside(home) if isinstance(drawing, Picture) else drawing for drawing in drawings
+            drawing.beside(home) if isinstance(drawing, Picture) else drawing.labelled(symbols)
+            for drawing in drawings
         )
+
+    def symbol(self, name: str) -> str:
+        """Return LaTeX of a quantity of the statement in the variant's language."""
+        return self.exercise.symbol(name, self.lang)
+
+    def solution_symbol(self, name: str) -> str:
+        """Return LaTeX of a quantity of the solution, or else of the statement, in the variant's language."""
+        return self.exercise.solution_symbol(name, self.lang)
 
     @property
     def figure(self) -> Figure | Picture | None:

@@ -112,6 +112,17 @@ class Element:
         }
         return replace(self, **changed) if changed else self
 
+    def labelled(self, write: Callable[[str], str]) -> Element:
+        """Return the element with each label as ``write`` gives it."""
+        changed: dict[str, Any] = {}
+        for name, kind, _ in self._fields():
+            label = self.__dict__[name]
+            if label and kind == "str | None":
+                changed[name] = write(label)
+            elif kind == "tuple[str, str]":
+                changed[name] = tuple(map(write, label))
+        return replace(self, **changed) if any(self.__dict__[n] != v for n, v in changed.items()) else self
+
     def reach(self) -> tuple[complex, ...]:
         """Return the points that bound the element."""
         return tuple(z for value in self._values() for z in _points(value))

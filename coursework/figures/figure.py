@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple
@@ -298,6 +298,14 @@ class Figure(_Drawn):
     @cached_property
     def _fitted(self) -> dict[tuple[float, float], Figure]:
         return {}
+
+    def labelled(self, write: Callable[[str], str]) -> Figure:
+        """Return the figure with each label as ``write`` gives it: itself where none changes."""
+        elements = tuple(element.labelled(write) for element in self.elements)
+        if elements == self.elements:
+            return self
+        paper_mm = self.paper_mm if self.bounded else None
+        return Figure(*elements, paper_mm=paper_mm, scale=self.fixed_scale)
 
     def beginning(self, count: int) -> Beginning:
         """Return the first elements of the figure, placed as in the whole and in the same frame.

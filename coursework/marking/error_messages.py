@@ -188,7 +188,7 @@ def _unexplained_message(variant: Variant, part: Part, read: str, before: Earlie
     to_mend = [p for p in parts if p.quantity not in before.right]
     states: dict[str, list[str]] = {}
     for p in to_mend or parts:
-        states.setdefault(before.state(p), []).append(f"${variant.exercise.solution_symbol(p.quantity)}$")
+        states.setdefault(before.state(p), []).append(f"${variant.solution_symbol(p.quantity)}$")
     groups = [
         (table["depends_on_many"] if len(symbols) > 1 else table["depends_on"])[state].format(
             listed(symbols, variant.lang)
@@ -205,7 +205,7 @@ def _given_above(variant: Variant, quantity: str) -> list[str]:
     graph = variant.exercise.solution.graph.textbook
     above = graph.ancestors((quantity,)) if quantity in graph.names else frozenset()
     given = [name for name in variant.stated if name in above and name != quantity]
-    return [f"${variant.exercise.solution_symbol(name)}$" for name in given] if len(given) <= _LISTED else []
+    return [f"${variant.solution_symbol(name)}$" for name in given] if len(given) <= _LISTED else []
 
 
 def _asked_above(variant: KeySource, quantity: str, among: set[str]) -> list[Part]:

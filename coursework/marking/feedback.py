@@ -59,7 +59,7 @@ def part_name(variant: Variant, part: Part) -> str:
     if not part.sort.is_called_by_symbol:
         number = 1 + [p.id for p in variant.parts].index(part.id)
         return f"{words(variant.lang)['sheet']['question']['one']} {number}"
-    return f"${variant.exercise.symbol(part.quantity)}$"
+    return f"${variant.symbol(part.quantity)}$"
 
 
 def echo(text: str, lang: str) -> str:
@@ -129,7 +129,7 @@ def _to_eliminate(variant: Variant, part: Part, run: str) -> str:
     vocabulary, run = vocabulary_of(tuple(sorted(stated))), spelled_out(plain_spelling(run)).strip()
     while run and (known := vocabulary.first(run)):
         if known[1] == "variable" and known[2] not in part.variables:
-            return f"${variant.exercise.solution_symbol(known[2])}$"
+            return f"${variant.solution_symbol(known[2])}$"
         run = run[known[0] :]
     return ""
 
@@ -204,13 +204,13 @@ def _harmless(text: str) -> str:
 def amount(variant: Variant, name: str, value: float) -> str:
     """Return a quantity and its value as Markdown: ``$r_3$ = 120,4 mm``."""
     unit = variant.exercise.units.get(name, "1")
-    return f"${variant.exercise.solution_symbol(name)}$ = {with_unit(significant(value), unit, variant.lang)}"
+    return f"${variant.solution_symbol(name)}$ = {with_unit(significant(value), unit, variant.lang)}"
 
 
 def either_symbol(variant: Variant, names: Sequence[str], *, both: bool) -> str:
     """Names of quantities as they are printed: ``$r_2$ or $r_3$``; ``and`` where ``both`` are meant."""
     joint = words(variant.lang)["marking"]["and" if both else "or"]
-    return f" {joint} ".join(f"${variant.exercise.solution_symbol(name)}$" for name in names)
+    return f" {joint} ".join(f"${variant.solution_symbol(name)}$" for name in names)
 
 
 def right_texts(variant: Variant, part: Part, read_as: str) -> tuple[str, str]:
@@ -225,6 +225,6 @@ _READ = "\N{OBJECT REPLACEMENT CHARACTER}"
 
 @lru_cache(maxsize=4096)
 def _right(exercise: CourseExercise, part: Part, lang: str) -> tuple[str, str]:
-    name = f"${exercise.symbol(part.quantity)}$"
+    name = f"${exercise.symbol(part.quantity, lang)}$"
     pieces = {"name": name[:1].upper() + name[1:], "read": _READ}
     return Sentence(words(lang)["marking"]["correct"], pieces).texts(lang)

@@ -195,7 +195,7 @@ def why(variant: Variant, error: UsualError, quantity: str) -> str:
             return str(table["taken_hidden"])
         form = table["taken_asked"] if numbers else table["taken"]
         number = numbers[0] if numbers else 0
-        return str(form.format(term=f"${variant.exercise.solution_symbol(error.source)}$", number=number))
+        return str(form.format(term=f"${variant.solution_symbol(error.source)}$", number=number))
     node = variant.exercise.solution.graph.textbook.node(error.source)
     usual_error = formula_errors(node.function)[error.place]
     about = usual_error.about
@@ -204,7 +204,7 @@ def why(variant: Variant, error: UsualError, quantity: str) -> str:
     else:
         printed_names = {
             name: PrintedName(
-                variant.exercise.solution_symbol(name),
+                variant.solution_symbol(name),
                 False,
                 "angle" if variant.exercise.units.get(name) == "deg" else "",
             )
@@ -217,9 +217,7 @@ def why(variant: Variant, error: UsualError, quantity: str) -> str:
         return sentence
     if error.source not in seen:
         return str(table["elsewhere_hidden"].format(why=sentence))
-    return str(
-        table["elsewhere"].format(where=f"${variant.exercise.solution_symbol(error.source)}$", why=sentence)
-    )
+    return str(table["elsewhere"].format(where=f"${variant.solution_symbol(error.source)}$", why=sentence))
 
 
 def _may_be_shown(about: ast.expr, formula: Collection[str], seen: Collection[str]) -> bool:

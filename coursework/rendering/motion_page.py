@@ -78,7 +78,7 @@ def context(animation: Animation, *, is_answered: bool = True) -> dict[str, Any]
         "is_answered": is_answered,
         "is_told": is_told,
         "readings": readings,
-        "driver": variant.exercise.symbol(animation.driver),
+        "driver": variant.symbol(animation.driver),
         "count": len(animation.angles),
         "first": first,
         "angle": angles[first],

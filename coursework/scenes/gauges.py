@@ -37,7 +37,7 @@ def gauges(reel: Reel, vectors: Sequence[Vectors]) -> tuple[Gauge, ...]:
 
     ``vectors`` are those of the points, each with its name and effect.
     """
-    exercise = reel.variant.exercise
+    variant, exercise = reel.variant, reel.variant.exercise
     effects_of: dict[str, list[str]] = {}
     for effect in EFFECTS:
         for name in _measured(reel, effect):
@@ -48,7 +48,7 @@ def gauges(reel: Reel, vectors: Sequence[Vectors]) -> tuple[Gauge, ...]:
         given = {**reel.variant.used, **posed}
         results = exercise.solve(**given, only=tuple(effects_of), effects=())
     text = [
-        _gauge(reel, exercise.solution_symbol(name), exercise.units.get(name, "1"), effects_of[name], value)
+        _gauge(reel, variant.solution_symbol(name), exercise.units.get(name, "1"), effects_of[name], value)
         for name, value in results.items()
     ]
     known_values = {gauge.symbol for gauge in text}

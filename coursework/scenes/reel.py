@@ -107,10 +107,17 @@ class Reel:
             There is no figure at that angle.
         """
         if self.film is not None:
-            return self._stated("figure", self.film.figure, self._with_driver_at(float(angle))).elements
+            return self._labelled(
+                self._stated("figure", self.film.figure, self._with_driver_at(float(angle))).elements
+            )
         given = self._with_driver_at(wrap(float(angle)))
         values = {n: v for n, v in given.items() if n in self._graph.leaves}
-        return self._graph.evaluate(("figure",), values)["figure"].elements
+        return self._labelled(self._graph.evaluate(("figure",), values)["figure"].elements)
+
+    def _labelled(self, elements: tuple[Element, ...]) -> tuple[Element, ...]:
+        """Return elements with the labels of the variant's language."""
+        symbols = self.variant.exercise.symbols(self.variant.lang)
+        return tuple(element.labelled(symbols) for element in elements) if symbols.stated else elements
 
     @cached_property
     def _graph(self) -> Graph:

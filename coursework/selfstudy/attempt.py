@@ -318,7 +318,7 @@ def _typeset(variant: Variant, part: Part, reading: Reading, index: int) -> str:
     if isinstance(value, np.ndarray) and value.size > 3:
         latex = part.sort.formula(value, lambda number: number_latex(number, "1", _DIGITS))
     elif part.sort.is_text:
-        symbols = {name: variant.exercise.symbol(name) for name in part.variables}
+        symbols = {name: variant.symbol(name) for name in part.variables}
         with suppress(Unreadable):  # behind words, or before a unit: the text stands as it is
             latex = part.sort.latex(reading.read_as[index], symbols)
     return f"${latex}$" if latex else ""

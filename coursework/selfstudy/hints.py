@@ -94,12 +94,12 @@ def _depends(variant: Variant, quantity: str, call: Callable[[str], str]) -> str
     given = [_given(variant, n) for n in needed if n in text]
     requested = {p.quantity: (k, p.id) for k, p in enumerate(variant.parts, start=1)}
     before = [
-        texts["asked"].format(symbol=f"${variant.exercise.solution_symbol(n)}$", number=requested[n][0])
+        texts["asked"].format(symbol=f"${variant.solution_symbol(n)}$", number=requested[n][0])
         for n in needed
         if n in requested and n not in variant.given
     ]
     between = [
-        texts["between"].format(symbol=f"${variant.exercise.solution_symbol(n)}$", call=call(n))
+        texts["between"].format(symbol=f"${variant.solution_symbol(n)}$", call=call(n))
         for n in needed
         if n not in requested
         and n not in variant.given
@@ -198,7 +198,7 @@ def _formula(variant: Variant, quantity: str, numbers: Mapping[str, Any]) -> str
     the value."""
     values, units = variant.walk, variant.exercise.units
     kinds = {n: kind_of(value, units.get(n, "1")) for n, value in values.items()}
-    symbols = {n: PrintedName(variant.exercise.solution_symbol(n), False, kinds[n]) for n in values}
+    symbols = {n: PrintedName(variant.solution_symbol(n), False, kinds[n]) for n in values}
     displayed = symbols | {
         n: PrintedName(number_latex(value, units.get(n, "1"), _DIGITS), True, kinds[n])
         for n, value in numbers.items()
@@ -210,7 +210,7 @@ def _formula(variant: Variant, quantity: str, numbers: Mapping[str, Any]) -> str
         plain = formula_latex(function, symbols)
     except KeyError:
         return ""
-    symbol = variant.exercise.solution_symbol(quantity)
+    symbol = variant.solution_symbol(quantity)
     if not formula or formula == symbol or _is_value(formula) or not _names_something(plain):
         return ""
     return f"$${symbol} = {formula}$$"

@@ -174,9 +174,9 @@ def curves(
     axes, spots = [], []
     for part in parts:
         angles, values = predictions.curve(variant, part.quantity)
-        axes.append(Axis(exercise.symbol(part.quantity), unit_text(part.unit, lang), values))
+        axes.append(Axis(variant.symbol(part.quantity), unit_text(part.unit, lang), values))
         spots.append(_spots(variant, part, answers.get(part.id), own_answers.get(part.quantity), at, values))
-    plot = Plot(Axis(exercise.symbol(driver), "°", angles), axes, lang, at, spots)
+    plot = Plot(Axis(variant.symbol(driver), "°", angles), axes, lang, at, spots)
     answered = tuple(p for p in parts if p.quantity in own_answers and not own_answers[p.quantity].is_usual)
     outside = tuple(p for p, far in zip(parts, plot.has_outside, strict=True) if far)
     return Curves(plot, driver, tuple(parts), answered, outside)

@@ -239,12 +239,11 @@ def _is_bounded(exercise: CourseExercise, quantity: str) -> bool:
 def question_of(variant: Variant, prediction: Prediction) -> str:
     """Return the question of a prediction, in one line of Markdown."""
     texts = words(variant.lang)["study"]["predict"]
-    exercise = variant.exercise
-    driver = exercise.spec.driver
+    driver = variant.exercise.spec.driver
     return texts[prediction.kind].format(
-        symbol=f"${exercise.symbol(prediction.quantity)}$",
-        other=f"${exercise.symbol(prediction.other)}$" if prediction.other else "",
-        driver=f"${exercise.symbol(driver.angle)}$" if driver else "",
+        symbol=f"${variant.symbol(prediction.quantity)}$",
+        other=f"${variant.symbol(prediction.other)}$" if prediction.other else "",
+        driver=f"${variant.symbol(driver.angle)}$" if driver else "",
         number=_number_of(variant, prediction),
     )
 

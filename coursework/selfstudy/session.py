@@ -544,7 +544,7 @@ class StudySession:
         if not free:
             return self._display(not_yet, self._trouble)
         chosen = free if label else list(usual_parts(self.variant, free))
-        symbol = self.variant.exercise.symbol
+        symbol = self.variant.symbol
         drawn = curves(self.variant, chosen, self.answers, own_answers)
         texts = self._texts["plot"].format(list=_symbols(chosen, symbol), driver=f"${symbol(drawn.driver)}$")
         notes = [

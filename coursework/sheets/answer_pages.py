@@ -225,7 +225,7 @@ def _blocks(variant: Answerable, index: int, lang: str, width: float, *, alone: 
 
 
 def _block(variant: Answerable, index: int, part: Part, number: str, lang: str, width: float) -> _Block:
-    symbol = variant.exercise.symbol(part.quantity) if part.sort.has_symbol else ""
+    symbol = variant.exercise.symbol(part.quantity, lang) if part.sort.has_symbol else ""
     blank = AnswerField(
         index,
         variant.exercise.name,

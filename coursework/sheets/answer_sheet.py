@@ -92,7 +92,7 @@ def _steps(variant: Variant, values: Mapping[str, Any], text: Any) -> tuple[Step
     units = variant.exercise.units
     named = {**values, **variant.existing(_named_besides(variant, values))}
     kinds = {n: kind_of(v, units.get(n, "1")) for n, v in named.items()}
-    symbols = tuple((n, variant.exercise.solution_symbol(n), kinds[n]) for n in named)
+    symbols = tuple((n, variant.solution_symbol(n), kinds[n]) for n in named)
     numbers = {
         n: PrintedName(number_latex(v, units.get(n, "1"), PRINTED_DIGITS), True, kinds[n])
         for n, v in named.items()
@@ -136,7 +136,7 @@ def _step(
             f"{exercise.solution.source}: the formula of {name} names {fault}, which is not among its "
             "quantities"
         ) from fault
-    symbol = variant.exercise.solution_symbol(name)
+    symbol = variant.solution_symbol(name)
     return Step(
         name=name,
         symbol=symbol,
@@ -237,7 +237,7 @@ def _matrix_latex(value: np.ndarray) -> str:
 
 def _symbols(variant: Variant) -> dict[str, str]:
     """LaTeX of what equations may be written in."""
-    return {n: variant.exercise.solution_symbol(n) for p in variant.parts for n in p.variables}
+    return {n: variant.solution_symbol(n) for p in variant.parts for n in p.variables}
 
 
 def answer_text(variant: Variant, part: Part, values: Mapping[str, Any]) -> str:

@@ -21,7 +21,8 @@ def solution_figure(variant: Variant) -> Figure | None:
     solution = variant.exercise.solution
     if solution.figure is None:
         return None
-    return call_on_quantities(solution.figure, _quantities(variant, solution.figure))
+    figure: Figure = call_on_quantities(solution.figure, _quantities(variant, solution.figure))
+    return figure.labelled(variant.exercise.symbols(variant.lang))
 
 
 def stated_overlay(variant: Variant, answers: Mapping[str, Any]) -> OwnDrawing | None:

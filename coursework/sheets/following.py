@@ -84,4 +84,4 @@ def _question_words(variant: Variant, name: str, question: str) -> str:
 
 def _symbol(variant: Variant, name: str) -> str:
     """Return a quantity's symbol as Markdown."""
-    return f"${variant.exercise.symbol(name)}$"
+    return f"${variant.symbol(name)}$"

@@ -66,7 +66,7 @@ def _unnamed(variant: Variant) -> Handout:
 
 def _given(variant: Variant, name: str) -> GivenValue:
     spec, value = variant.exercise.spec.given[name], variant.given[name]
-    symbol = variant.exercise.symbol(name)
+    symbol = variant.symbol(name)
     if spec.is_choice:
         return GivenValue(name, symbol, variant.text.label(name, value), "", is_number=False)
     return GivenValue(name, symbol, plain(value), unit_text(spec.unit, variant.lang))
@@ -108,7 +108,7 @@ def _question(variant: Variant, number: int, part: Part, ways: Sequence[str]) ->
     return Question(
         number=number,
         id=part.id,
-        symbol=variant.exercise.symbol(part.quantity) if part.sort.has_symbol else "",
+        symbol=variant.symbol(part.quantity) if part.sort.has_symbol else "",
         prompt=prompt(variant, part, ways),
         unit="" if part.asks_unit else units_text(part, variant.lang, variant),
         kind=part.kind,
@@ -137,7 +137,7 @@ _SIGNS = {"-": "−", "*": "·", "√(": "√", "cos(": "cos", "sin(": "sin"}  #
 
 def _keys(variant: Variant, part: Part) -> tuple[tuple[str, str], ...]:
     """Return the keys of a part: what each shows, and what it types."""
-    shown = {name: plain_line(f"${variant.exercise.symbol(name)}$", variant.lang) for name in part.variables}
+    shown = {name: plain_line(f"${variant.symbol(name)}$", variant.lang) for name in part.variables}
     decimal = localise("0.5", variant.lang)[1]
     typed = (decimal if key == "," else key for key in part.sort.keys(part))
     return tuple((shown.get(key) or _SIGNS.get(key, key), key) for key in typed)

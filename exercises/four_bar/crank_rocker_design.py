@@ -44,6 +44,6 @@ EXERCISE = Exercise(
         Part("r2", unit="mm", points=2, judge="meets_the_demands"),
         Part("r3", unit="mm", points=2, judge="meets_the_demands"),
     ),
-    symbols={"mu_min": r"\mu_{\min}"},
+    symbols={"alpha": r"\theta_a", "mu_min": r"\mu_{\min}"},
     figure=figure,
 )

@@ -45,8 +45,8 @@ from ._machines import rows_of
 def _arcs(center, radius, start, middle):
     """The two arcs of the crank, anticlockwise: alpha from start to middle, beta the rest."""
     return (
-        rotation_arrow(center, radius, start, middle, r"\alpha"),
-        rotation_arrow(center, 0.8 * radius, middle, start + 360, r"\beta"),
+        rotation_arrow(center, radius, start, middle, r"\theta_a"),
+        rotation_arrow(center, 0.8 * radius, middle, start + 360, r"\theta_r"),
     )
 
 

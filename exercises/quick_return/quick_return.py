@@ -260,6 +260,8 @@ EXERCISE = Exercise(
         "angle_OAB": r"\angle OAB",
         "xC": "x_C",
         "stroke": "s",
+        "alpha": r"\theta_a",
+        "beta": r"\theta_r",
         "t_advance": "t_a",
         "t_return": "t_r",
         "mechanical_advantage": r"\lambda",

@@ -61,6 +61,6 @@ EXERCISE = Exercise(
         Part("r3", unit="mm", points=2, judge="meets_the_demands"),
         Part("e", unit="mm", points=2, judge="meets_the_demands"),
     ),
-    symbols={"stroke": "s"},
+    symbols={"stroke": "s", "alpha": r"\theta_a"},
     figure=figure,
 )

@@ -29,7 +29,7 @@ def _in_line(r2, e, x1, x2, anticlockwise):
         link(A1, C1),
         link(0j, A2),
         link(A2, C2),
-        rotation_arrow(0j, 0.6 * r2, start, end, label=r"\alpha"),
+        rotation_arrow(0j, 0.6 * r2, start, end, label=r"\theta_a"),
         ground_pivot(0j, "O"),
         pin(A1, "A_1"),
         pin(A2, "A_2"),

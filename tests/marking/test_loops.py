@@ -370,7 +370,7 @@ def test_a_wrong_sign_and_a_forgotten_link_are_told_by_the_symbol_of_every_link(
                 assert mark.verdict in ("wrong", "slip:link_missing")
                 continue
             assert f"slip:{kind}" in mark.matches, (terms, mark.verdict)
-            symbol = symbols.get(link.name) or exercise.symbol(link.name)
+            symbol = symbols.get(link.name) or exercise.spec.symbol(link.name)
             assert symbol in mark.says or mark.mistakes, (mark.says, fixed)
 
 

@@ -230,11 +230,9 @@ def test_a_cause_is_told_in_symbols_that_the_student_has_seen(name):
     for lang in ("en", "fr"):
         (variant,) = distinct_variants(COURSE[name], 0, 1, lang, parts=(ALL,))
         known = {*variant.given, *(part.quantity for part in variant.exercise.spec.parts)}
-        seen = sorted(
-            (variant.exercise.solution_symbol(quantity) for quantity in known), key=len, reverse=True
-        )
+        seen = sorted((variant.solution_symbol(quantity) for quantity in known), key=len, reverse=True)
         names = variant.exercise.solution.graph.names - known
-        unseen = {variant.exercise.solution_symbol(name) for name in names} - {*seen}
+        unseen = {variant.solution_symbol(name) for name in names} - {*seen}
         wrong = []
         for part in variant.parts:
             if not part.sort.is_scalar or part.judge:

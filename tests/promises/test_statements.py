@@ -50,7 +50,7 @@ def test_a_sheet_lists_what_the_statement_or_an_asked_question_uses_and_no_more(
                     is_used = False
                 except (Cycle, MissingQuantity):
                     is_used = True
-                may_be = is_used or given in drawn or bare(exercise.symbol(given)) in stated
+                may_be = is_used or given in drawn or bare(exercise.symbol(given, "en")) in stated
                 if is_used > (given in listed) or (given in listed) > may_be:
                     wrong.append((name, part.id, given, is_used))
     assert not wrong

@@ -187,7 +187,9 @@ def test_vectors_have_one_scale_for_the_whole_cycle_and_the_legend_states_it():
 def test_the_readings_are_the_quantities_of_the_scene():
     moved = animation("slotted_mechanism", 1, "en", "all")
     scene = Scene(COURSE["slotted_mechanism"], moved.variant.used, ("velocity",))
-    reading = next(r for r in moved.readings if r.symbol == COURSE["slotted_mechanism"].symbol("omega4"))
+    reading = next(
+        r for r in moved.readings if r.symbol == COURSE["slotted_mechanism"].symbol("omega4", "en")
+    )
     assert "omega4" in scene.quantities
     assert reading.effects == ("velocity",)
     asked = {**moved.variant.used, "theta2": float(moved.angles[7])}

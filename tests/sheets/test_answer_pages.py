@@ -105,13 +105,16 @@ def test_every_part_has_its_fields_in_order(name):
 
 
 def geometry(pages):
-    """The pages without what tells whose they are, and in which order a variant offers its cases."""
+    """The pages without what tells whose they are and in which language, and in which order a variant offers
+    its cases."""
     return [
         replace(
             page,
             code_text="",
             fields=tuple(
-                replace(field, seed=0, unit_text="", ticks=tuple(("", box) for _, box in field.ticks))
+                replace(
+                    field, seed=0, unit_text="", symbol="", ticks=tuple(("", box) for _, box in field.ticks)
+                )
                 for field in page.fields
             ),
         )

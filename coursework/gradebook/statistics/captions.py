@@ -70,7 +70,7 @@ class Names:
         exercise, requested = self._exercise_and_part(part)
         if exercise is None or requested is None or not requested.sort.is_scalar:
             return ""
-        return exercise.symbol(requested.quantity)
+        return exercise.symbol(requested.quantity, self._lang)
 
     def question(self, part: ReportedQuestion) -> str:
         """Return the words of the question, shortened, as plain text; the part's id where there are none."""

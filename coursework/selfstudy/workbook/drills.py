@@ -348,4 +348,4 @@ def _given(variant: Variant, name: str, value: Any) -> str:
         if given is None:  # it is drawn, and stands on no sheet
             raise ValueError(name)
         return f"${given_formula(given)}$" if given.is_number else given_words(given, variant.lang)
-    return f"${variant.exercise.solution_symbol(name)} = {_told(variant, name, value)[1:]}"
+    return f"${variant.solution_symbol(name)} = {_told(variant, name, value)[1:]}"

@@ -91,7 +91,8 @@ def _table(head: Sequence[str], rows: Sequence[tuple[str, ...]], sides: str) -> 
 
 def _notation(folder: Folder, stated: Mapping[str, Any], lang: str) -> tuple[Piece, ...]:
     head = words(lang)["book"]["symbols_head"][:3]
-    rows = [(f"${row['symbol']}$", row[lang], row["unit"]) for row in stated["symbols"]]
+    write = folder.symbols(lang)
+    rows = [(f"${write(row['symbol'])}$", row[lang], row["unit"]) for row in stated["symbols"]]
     return (_table(head, rows, "lll"),)
 
 

@@ -73,10 +73,14 @@ def _of_lesson(course: Course[Any], lesson: str, image: LessonImage, lang: str) 
         created = created.beside(course.folder.lesson_place)
     text = plain_line(image.caption, lang)
     on_paper = _SCREEN not in image.asked
+    symbols = course.folder.symbols(lang)
+    if isinstance(created, Figure):
+        created = created.labelled(symbols)
     if isinstance(created, (Figure, Picture)):
         return DrawnPiece(text, image.caption, figure=created, tall=float(tall), on_paper=on_paper)
     if isinstance(created, Sequence) and created and all(isinstance(item, Figure) for item in created):
-        return replace(_moving(created, text, image.caption, lang), on_paper=on_paper)
+        frames = [frame.labelled(symbols) for frame in created]
+        return replace(_moving(frames, text, image.caption, lang), on_paper=on_paper)
     raise BadCourse(
         f"{image.name}() gives a Figure, a Picture, or a list of Figures that follow one another; "
         f"found {short(created)}"

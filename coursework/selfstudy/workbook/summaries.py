@@ -33,7 +33,8 @@ def summary_of(folder: Folder, lesson: LessonText) -> SummaryCard | None:
     if not isinstance(stated, Mapping) or not set(stated) <= {"formulas", *RULES}:
         raise BadCourse(f"exercises/book/summaries.toml: {lesson.name}: write {_FORM}")
     equations = [(" ".join(tex.split()), number) for tex, number in _equations(lesson)]
-    formulas = [_found(equations, piece, lesson.name) for piece in stated.get("formulas", ())]
+    pieces = map(folder.symbols(lesson.lang), stated.get("formulas", ()))
+    formulas = [_found(equations, piece, lesson.name) for piece in pieces]
     return SummaryCard(lesson, tuple(formulas), *(_said(stated, rule, lesson.lang) for rule in RULES))
 
 

@@ -149,7 +149,7 @@ def _found(path: Path, text: str, lang: str) -> dict[str, Any]:
             "questions": asked,
             "undrawn": [localised(why, lang) for why in dict.fromkeys(made.undrawn.values())],
             "symbols": {
-                n: exercise.symbol(n) if n in made.linkage.given else _symbol(n)
+                n: exercise.symbol(n, lang) if n in made.linkage.given else _symbol(n)
                 for n in (*made.linkage.given, *(c.name for able in asked.values() for c in able))
             },
         }

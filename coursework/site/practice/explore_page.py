@@ -55,7 +55,7 @@ def explore(request: Request) -> Response:
         "is_piece": request.is_fragment,
         "rows": [_row(request, typical, p, values[p.name]) for p in choices],
         "beyond": [_bounds(request, typical, p) for p in choices if p.is_beyond(texts[p.name])],
-        "refused": [typical.exercise.symbol(n) for n, value in read.items() if value is None],
+        "refused": [typical.symbol(n) for n, value in read.items() if value is None],
         "address": f"/explore/{name}",
         "mechanism": address_of(request, name),
     }
@@ -113,12 +113,12 @@ def shown_mechanism(
     except CourseworkError:
         return {**_NOTHING, "sentences": [said["undefined"]]}
     exercise = typical.exercise
-    symbol, unit = exercise.symbol(driver.name), unit_text(driver.unit, lang)
+    symbol, unit = typical.symbol(driver.name), unit_text(driver.unit, lang)
     axis = Axis(symbol, unit, found.steps[::_EVERY])
 
     def symbol_of(name: str) -> str:
         is_known = name in exercise.quantity_names
-        return str(exercise.solution_symbol(name) if is_known else said["torque"])
+        return str(typical.solution_symbol(name) if is_known else said["torque"])
 
     plots = []
     for effect, rows in curves.items():
@@ -212,7 +212,7 @@ def _svg(drawing: Any, sentences: list[str], crank: tuple[complex, complex] | No
 def _row(request: Request, typical: Any, parameter: Parameter, value: Any) -> dict[str, Any]:
     """Return a row of the form: a slider with its number, or a choice."""
     unit = unit_text(parameter.unit, request.lang) if parameter.unit != "1" else ""
-    row = {"name": parameter.name, "symbol": typical.exercise.symbol(parameter.name), "unit": unit}
+    row = {"name": parameter.name, "symbol": typical.symbol(parameter.name), "unit": unit}
     if parameter.choices:
         cases = [(case, typical.label(parameter.name, case)) for case in parameter.choices]
         return {**row, "value": value, "cases": cases}
@@ -225,7 +225,7 @@ def _bounds(request: Request, typical: Any, parameter: Parameter) -> tuple[str, 
     """Return the symbol of a parameter and its bounds as they are read, the upper one with its unit."""
     low, high = (localise(plain(bound), request.lang) for bound in (parameter.low, parameter.high))
     unit = unit_text(parameter.unit, request.lang)
-    return typical.exercise.symbol(parameter.name), low, f"{high}{'' if unit == '°' else ' '}{unit}".strip()
+    return typical.symbol(parameter.name), low, f"{high}{'' if unit == '°' else ' '}{unit}".strip()
 
 
 ROUTES = (Route("/explore/{exercise}", explore, Permission.OWN, limit="explore"),)

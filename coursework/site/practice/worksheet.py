@@ -297,7 +297,7 @@ class Worksheet:
         if self._is_revealed(name):
             solution = hints.revealed_text(self.variant, name)
         number = next((k for k, p in enumerate(self.parts, 1) if p == name), 0)
-        title = "" if number else f"${self.variant.exercise.solution_symbol(quantity)}$"
+        title = "" if number else f"${self.variant.solution_symbol(quantity)}$"
         return QuestionHints(
             name,
             Markup(markdown.html_inline(title, lang)),

@@ -382,7 +382,7 @@ def test_any_name_in_the_marks_is_printed(course, folder):
 def test_every_symbol_of_the_course_is_a_label_of_a_chart(course):
     for name in course.names:
         for part in course[name].spec.parts:
-            symbol = course[name].symbol(part.quantity)
+            symbol = course[name].symbol(part.quantity, "en")
             assert figure_text.read(symbol).runs
 
 
