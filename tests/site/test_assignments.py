@@ -231,6 +231,14 @@ def test_a_time_is_told_by_its_moment_and_its_zone(class_of_three):
     assert (datetime.fromisoformat(at), text.endswith(f"({zone})")) == (class_of_three.at, True)
 
 
+@pytest.mark.parametrize(("publication", "times"), [(USUAL, True), (Publication(), False)])
+def test_a_time_zone_is_named_where_there_are_times(class_of_three, publication, times):
+    number = dealt(class_of_three, publication)
+    class_of_three.at = OPENS
+    for address in ("/assignments", f"/assignments/{number}"):
+        assert ("Times are in the time zone" in class_of_three.browser(ZOE).get(address).text) is times
+
+
 def test_blank_answers_are_handed_in_too(class_of_three):
     number = dealt(class_of_three)
     handed_in(class_of_three.browser(ZOE), number, {"e1-rA": "1"})

@@ -73,6 +73,11 @@ class AssignmentState:
         return None if ends[0] is None or ends[1] is None else max(ends[0], ends[1])
 
     @property
+    def has_times(self) -> bool:
+        """Return True if a time of day is among what the person reads of the assignment."""
+        return self.phase is Phase.TO_COME or self.assignment.own_publication.closes is not None
+
+    @property
     def must_start(self) -> bool:
         """Return True if the paper opens only when the person starts its working time."""
         return self.assignment.must_start(self.now)

@@ -61,7 +61,10 @@ def list_page(request: Request) -> Response:
             states = published_states(request, connection)
     groups = [(phase.value, [item for item in states if item.phase is phase]) for phase in _ORDER]
     return request.render(
-        "site/student/assignments", groups=[g for g in groups if g[1]], zone=zone_name(request.received_at)
+        "site/student/assignments",
+        groups=[g for g in groups if g[1]],
+        has_times=any(item.has_times for item in states),
+        zone=zone_name(request.received_at),
     )
 
 
