@@ -24,7 +24,7 @@ from coursework.figures import (
 )
 from coursework.kinematics.dyads import rrr
 
-from ._machines import rows_of, unlettered
+from ._machines import box, capsule, rows_of, unlettered
 from ._panels import TURN, closed, moved
 
 FINE = np.arange(0.0, 360.0, 3.0)
@@ -409,6 +409,7 @@ def cloth_cutter():
 
 PEDAL = (62.0, 22.0, 58.0, 24.0)  #: no bar can turn fully: s + l = 84, p + q = 82
 TREAD, SWING = 95.0, 13.0  #: middle of the pedal's arm and half of its swing, degrees
+SHEATH = complex(88, -30)  #: where the cable enters its sheath
 
 
 def pedal():
@@ -419,21 +420,25 @@ def pedal():
 def _pedal_at(theta2):
     O, A, B, C = map(complex, _linkage(PEDAL, theta2))
     foot = complex(polar(40.0, theta2 + 62.0))
-    tread = complex(polar(9.0, theta2 + 152.0))
     end = C + complex(polar(30.0, float(angle(B - C)) - 74.0))
     return Figure(
-        link(A, O, foot, weld=True),
-        link(foot - tread, foot + tread),
-        link(A, B, label="3"),
-        link(B, C, end, label="4"),
-        line(end, end - 26j, label="c"),
+        capsule(O, foot, 4.0, 2.6),
+        capsule(O, A, 4.0, 3.0),
+        box(complex(-11, 1), complex(11, 4.5), "dark", at=foot, turned=theta2 - 28.0),
+        capsule(C, end, 4.0, 2.6),
+        capsule(C, B, 4.0, 3.0),
+        capsule(A, B, 2.0, shade="white"),
+        line(end, SHEATH, thin=False, label="c"),
+        box(complex(-2.2, -12), complex(2.2, 0), at=SHEATH),
+        note((A + B) / 2 + 4.5j, "3"),
+        note((B + C) / 2 + 5, "4"),
         ground_pivot(O, "O"),
         ground_pivot(C, "C"),
         pin(A, "A"),
         pin(B, "B"),
         pin(end, "D"),
-        note(foot / 2 - 4, "2"),
-        paper_mm=(125, 75),
+        note(foot / 2 - 6, "2"),
+        paper_mm=(125, 80),
     )
 
 
