@@ -190,6 +190,19 @@ class Drill:
 
 
 @dataclass(frozen=True)
+class DrillGroup:
+    """Drills of a section that one exercise gives: the heading of the section, empty where the lesson has
+    none; the exercise and its title; what a reader must know who has not its sheet (Markdown), where it is
+    met first."""
+
+    section: str
+    exercise: str
+    title: str
+    setting: str
+    drills: tuple[Drill, ...]
+
+
+@dataclass(frozen=True)
 class Judgement:
     """Sentence to be judged true or false: its number, and the reason of what it is (Markdown)."""
 
@@ -246,8 +259,12 @@ class BookSection:
     lesson: LessonText | None
     exercises: tuple[BookExercise, ...]
     title: str = ""  #: where there is no lesson
-    drills: tuple[Drill, ...] = ()
+    drill_groups: tuple[DrillGroup, ...] = ()
     judgements: tuple[Judgement, ...] = ()
+
+    @property
+    def drills(self) -> tuple[Drill, ...]:
+        return tuple(drill for group in self.drill_groups for drill in group.drills)
 
 
 @dataclass(frozen=True)

@@ -27,7 +27,7 @@ from coursework.selfstudy.workbook.lessons import lesson_text
 from coursework.selfstudy.workbook.matter import matter_of, title_page
 from coursework.selfstudy.workbook.summaries import summary_of
 from coursework.sheets.answer_sheet import answer_sheet
-from coursework.sheets.book import Book, BookChapter, BookExercise, BookSection, Drill, Judgement
+from coursework.sheets.book import Book, BookChapter, BookExercise, BookSection, DrillGroup, Judgement
 from coursework.sheets.handout import handout
 
 _FAR = 500_000  #: seeds away from those of a class and of self-study: a book prints its solutions
@@ -145,10 +145,10 @@ def _chapter(
             exercises.append(_practised(course, name, lang, seed, f"{chapter.number}.{count}"))
             advance()
         title = "" if lesson else placed.titles.get(lang, "")
-        drills: tuple[Drill, ...] = ()
+        drills: tuple[DrillGroup, ...] = ()
         judgements: tuple[Judgement, ...] = ()
         if lesson and course.folder.book_place.is_dir():
-            drills = drills_of(course, placed.exercises, lesson.number, lang, seed)
+            drills = drills_of(course, lesson, seed)
             judgements = judgements_of(course.folder, lesson)
         sections.append(BookSection(lesson, tuple(exercises), title, drills, judgements))
     lessons = [section.lesson for section in sections if section.lesson]

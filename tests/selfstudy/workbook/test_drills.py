@@ -5,77 +5,140 @@ from __future__ import annotations
 
 import cmath
 import math
+import re
 from collections import Counter
 
 import pytest
 from pdf_text import page_texts
 
 import coursework
+from coursework.course.lessons import taught_by
 from coursework.errors import BadCourse
 from coursework.rendering.renderer import renderer_of
 from coursework.selfstudy.workbook.binding import bound
-from coursework.selfstudy.workbook.drills import GRADES, drills_of, judgements_of
+from coursework.selfstudy.workbook.drills import MOST, drills_of, judgements_of
 from coursework.sheets.book import LessonText
 
 
 def turned(r, theta):
     """Return a vector of the plane; the angle is in degrees."""
-    return cmath.rect(r, math.radians(theta))
+    return r * cmath.rect(1, math.radians(theta))
 
 
-def omega3_of_coupler(v):
-    """Return the coupler's rate: the velocity of B is perpendicular to CB."""
-    arm = turned(v["r2"], v["theta2"]) + turned(v["r3"], v["theta3"]) - v["r1"]
-    along_a = 1j * v["omega2"] * turned(v["r2"], v["theta2"])
-    along_ba = 1j * turned(v["r3"], v["theta3"])
-    return -(along_a * arm.conjugate()).real / (along_ba * arm.conjugate()).real
+def drilled(course, name, number=5, lang="en", seed=0):
+    """Return the groups of drills of a lesson, and its drills."""
+    groups = drills_of(course, LessonText(name, number, lang, "", (), ()), seed)
+    return groups, [drill for group in groups for drill in group.drills]
 
 
 def test_drills_are_answered_from_what_they_give(course):
     """By another way than the solution's: a vector equation in place of its closed form."""
-    drills = drills_of(course, ("coupler_curve",), 5, "en", 0)
-    assert len(drills) == sum(GRADES)
-    assert [drill.number for drill in drills] == [f"5.{k}" for k in range(1, 11)]
-    assert [drill.grade for drill in drills] == sorted(drill.grade for drill in drills)
+    groups, drills = drilled(course, "velocities")
+    assert len(drills) <= MOST
+    assert [drill.number for drill in drills] == [f"5.{k}" for k in range(1, len(drills) + 1)]
+    for group in groups:
+        assert [drill.grade for drill in group.drills] == sorted(drill.grade for drill in group.drills)
     checked = 0
     for drill in drills:
         v = {**drill.values, drill.quantity: drill.result}
-        if {"omega3", "r1"} <= {*v}:
-            assert v["omega3"] == pytest.approx(omega3_of_coupler(v), rel=1e-3)
-            checked += 1
-        elif "theta3" in v and (name := next((n for n in ("xP", "yP") if n in v), None)):
-            P = turned(v["r2"], v["theta2"]) + turned(v["AP"], v["theta3"] + v["beta"])
-            assert v[name] == pytest.approx(P.real if name == "xP" else P.imag, rel=1e-3)
-            checked += 1
-    assert checked >= 7
+        if drill.exercise == "coupler_curve" and {"v_P", "v_P_x"} <= {*v}:
+            assert v["v_P"] == pytest.approx(abs(complex(v["v_P_x"], v["v_P_y"])), rel=1e-3)
+        elif drill.exercise == "four_bar_motion" and {"omega2", "omega3", "theta4"} <= {*v}:
+            # B moves across CB: along CB the velocities of A and of B about A cancel.
+            along = (v[f"r{k}"] * v[f"omega{k}"] * turned(1j, v[f"theta{k}"] - v["theta4"]) for k in (2, 3))
+            assert sum(along).real == pytest.approx(0, abs=1e-3 * abs(v["r2"] * v["omega2"]))
+        elif drill.exercise == "slotted_mechanism" and {"rA_dot", "omega2", "theta4"} <= {*v}:
+            of_the_pin = 1j * v["omega2"] * turned(v["r2"], v["theta2"] - v["theta4"])
+            assert v["rA_dot"] == pytest.approx(of_the_pin.real, rel=1e-3)
+        else:
+            continue
+        checked += 1
+    assert checked >= 5
+
+
+def test_a_drill_has_the_grade_that_is_stated(course):
+    """A sum has one dot, also backwards; a case or an angle to choose two at least; backwards one more."""
+    _, drills = drilled(course, "grashof_and_coupler_curves")
+    asked = {drill.grade: [] for drill in drills}
+    for drill in drills:
+        asked[drill.grade].append(drill.asked)
+    assert all("sum" in one for one in asked[1])
+    assert any("True" in one for one in asked[1])
+    assert not [one for grade in (2, 3) for one in asked.get(grade, ()) if "sum" in one]
+    _, drills = drilled(course, "velocities")
+    of_a_bar = [drill for drill in drills if "$v_{BA}$" in drill.asked]
+    assert {(drill.asked.rpartition(" ")[2], drill.grade) for drill in of_a_bar} >= {
+        ("False", 1),
+        ("True", 2),
+    }
+    assert all(drill.grade >= 2 for drill in drills if drill.quantity in ("theta3", "theta4"))
+
+
+def test_every_drill_stands_under_a_section_that_teaches_it_and_says_what_it_is_of(course):
+    """Over all exercises: the words that precede their drills are there in every language, and name every
+    section by its number in the lesson."""
+    stated = course.folder.book_table("drills")
+    alone = {"vocabulary", "havens_construction"}  # whose questions need no words, or are none
+    assert [
+        name for name in stated if name not in alone and not {*course.folder.languages} <= {*stated[name]}
+    ] == []
+    groups, _ = drilled(course, "accelerations", 7)
+    taught = {
+        heading
+        for name in course.folder.names
+        for lesson in taught_by(course.folder, name, "en")
+        if lesson.name == "accelerations"
+        for heading in lesson.sections
+    }
+    assert {group.section for group in groups} <= taught
+    assert all(group.setting for group in groups if group.exercise not in alone and groups.index(group) == 0)
+    (first, *_) = (group for group in groups if group.exercise == "coriolis")
+    assert first.section.startswith("6. ")
+    assert "relative_motion" not in {drill.quantity for group in groups for drill in group.drills}
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("seed", [0, 1])
 def test_no_lesson_asks_one_formula_more_than_twice_nor_what_it_tells(course, seed):
-    for number, section in enumerate(
-        (section for chapter in course.folder.chapters for section in chapter.sections), 1
-    ):
-        drills = drills_of(course, section.exercises, number, "fr", seed)
+    for number, name in enumerate(course.folder.lessons, 1):
+        groups, drills = drilled(course, name, number, "fr", seed)
+        bare = {group.exercise for group in groups if not group.setting}
+        assert bare - {group.exercise for group in groups if group.setting} <= {"vocabulary"}, name
         kinds = Counter(kind for drill in drills for kind in drill.kinds)
-        # From a quantity back to a datum once: the words that a drill asks end with whether it goes back.
+        # From a quantity back once: the words that a drill asks end with whether it goes back.
         most = {kind: 1 if kind.endswith("True") else 2 for kind in kinds}
-        assert not [kind for kind, times in kinds.items() if times > most[kind]], section.lesson
-        told = {(d.exercise, d.seed, name) for d in drills for name in d.values if d.quantity != name}
+        assert not [kind for kind, times in kinds.items() if times > most[kind]], name
+        told = {(d.exercise, d.seed, one) for d in drills for one in d.values if d.quantity != one}
         drawn = {(d.exercise, d.seed): {*course[d.exercise].variant(d.seed).used} for d in drills}
         found = {(d.exercise, d.seed, d.quantity) for d in drills}
-        assert not [one for one in told & found if one[2] not in drawn[one[:2]]], section.lesson
+        assert not [one for one in told & found if one[2] not in drawn[one[:2]]], name
         numbers = [d for d in drills if not isinstance(d.result, str)]
-        assert not [d.text for d in numbers if d.result in d.values.values()], section.lesson
+        assert not [d.text for d in numbers if d.result in d.values.values()], name
 
 
 def test_another_book_has_other_drills_and_both_languages_have_the_same(course):
-    first, again = (drills_of(course, ("grashof",), 3, "en", 0) for _ in range(2))
-    other, french = drills_of(course, ("grashof",), 3, "en", 1), drills_of(course, ("grashof",), 3, "fr", 0)
+    name = "grashof_and_coupler_curves"
+    (_, first), (_, again), (_, other) = (drilled(course, name, 3, "en", seed) for seed in (0, 0, 1))
+    _, french = drilled(course, name, 3, "fr")
     assert first == again
-    assert {drill.text for drill in first}.isdisjoint(drill.text for drill in other)
+    numbers = {drill.text for drill in first if drill.values}
+    assert numbers.isdisjoint(drill.text for drill in other)
     assert [drill.values for drill in first] == [drill.values for drill in french]
     assert all(drill.seed >= 700_000 for drill in first)
+
+
+@pytest.mark.parametrize(
+    ("stated", "told"),
+    [
+        ("[crank_pim]\n", "names no exercise 'crank_pim'; did you mean 'crank_pin'"),
+        ("[crank_pin.sections]\nxA = 1\n", "crank_pin has no question 'xA'"),
+        ("[crank_pin.sections]\nx = 3\n", "crank_pin: x: no section 3 of the lesson rods teaches it"),
+    ],
+)
+def test_a_table_of_drills_that_names_what_is_not_there_is_refused(small, stated, told):
+    (small / "exercises/book/drills.toml").write_text(stated, "utf-8")
+    with pytest.raises(BadCourse, match=re.escape(told)):
+        drilled(coursework.open_course(small), "rods")
 
 
 def test_every_lesson_has_sentences_to_judge_in_every_language(course):
