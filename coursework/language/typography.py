@@ -6,8 +6,9 @@ import re
 
 from coursework.language.numbers import NARROW_SPACE
 
-# Also before italics, a formula, a quotation, the next piece.
-_APOSTROPHE = re.compile(r"(?<=\w)'(?=[\w*$«]|\Z)")
+# Between letters, also before italics, a formula, a quotation, the next piece; after the s of a possessive. What
+# stands between two such signs is a quotation, and keeps both.
+_APOSTROPHE = re.compile(r"(?<!\w)'[^'\n]*'(?!\w)|(?<=\w)'(?=[\w*$«]|\Z)|(?<=s)'(?=[\s,.;:!?)])")
 _UNIT = re.compile(
     r"(?<=\d)[ \u00a0](?=%|(?:[kcmµ]?m|k?g|[kmM]?N|[kMm]?W|[kMm]?J|Hz|m?s|min|h|rad|tr|rev|rpm)"
     r"(?:[²³/·.,;:)\s]|$))"
@@ -23,7 +24,7 @@ def typeset(text: str, lang: str) -> str:
 
     French has a narrow space before ``; : ! ? »``, after ``«``, and between a number and its unit.
     """
-    text = _APOSTROPHE.sub("’", text)
+    text = _APOSTROPHE.sub(lambda found: "’" if found[0] == "'" else found[0], text)
     if lang != "fr":
         return _UNIT.sub("\N{NO-BREAK SPACE}", text)
     for pattern in (_UNIT, _HIGH_MARKS, _MISSING_SPACE):

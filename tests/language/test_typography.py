@@ -55,6 +55,12 @@ def test_french_puts_narrow_spaces_where_french_does():
         "Est-ce juste\u202f? Oui\u202f: «\u202fvoici\u202f»\u202f; 3\u202fmm"
     )
     assert typeset("l'angle, quoi?", "fr") == "l’angle, quoi\u202f?"
+    assert typeset("Havens' gear, the wheels'\nteeth, Willis'; don't", "en") == (
+        "Havens’ gear, the wheels’\nteeth, Willis’; don’t"
+    )
+    assert typeset("no 'rod'; did you mean 'rods' or the pin's", "en") == (
+        "no 'rod'; did you mean 'rods' or the pin’s"
+    )
     assert typeset("Is it right? 3 mm", "en") == "Is it right? 3\u00a0mm"
     assert typeset("à 12:30 (a:b)", "fr") == "à 12:30 (a:b)"
     for write in (to_html, to_typst_markup, to_notebook_markdown):
