@@ -6,8 +6,9 @@ headings, ``## 8. …``, are its sections.
 
 from __future__ import annotations
 
+import json
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
@@ -135,6 +136,23 @@ def taught_by(folder: Folder, exercise: str, lang: str) -> tuple[Lesson, ...]:
     return tuple(_taught(folder, exercise, [*placed, *listed], lang))
 
 
+def check_parts(exercise: str, ids: Collection[str], lessons: Sequence[Lesson]) -> None:
+    """Check that the ``parts`` that lessons help with are questions of the exercise.
+
+    Raises
+    ------
+    BadCourse
+        One is not.
+    """
+    for part in (part for lesson in lessons for part in lesson.parts):
+        if part not in ids:
+            there = ", ".join(ids)
+            raise BadCourse(
+                f"{_SOURCE}: {exercise}: parts: the exercise has no question {part!r}{nearest(part, ids)}; "
+                f"available: {there}"
+            )
+
+
 def practised(folder: Folder, lesson: str, lang: str) -> tuple[str, ...]:
     """Return the exercises that a lesson teaches, in the order in which they are learnt."""
     return tuple(
@@ -160,7 +178,16 @@ def _taught(folder: Folder, exercise: str, stated: list[Any], lang: str) -> Iter
         if path.exists():
             title, headings = _headings(path, path.stat().st_mtime_ns)
             sections = _sections(exercise, name, table.get("sections", []), headings)
-            yield Lesson(name, title, sections, tuple(table.get("parts", ())))
+            yield Lesson(name, title, sections, _parts(exercise, table.get("parts", [])))
+
+
+def _parts(exercise: str, stated: Any) -> tuple[str, ...]:
+    if not isinstance(stated, list) or not all(isinstance(part, str) for part in stated):
+        would = json.dumps([stated if isinstance(stated, str) else "r4"])
+        raise BadCourse(
+            f"{_SOURCE}: {exercise}: parts is a list of questions; write parts = {would}; found {stated!r}"
+        )
+    return tuple(stated)
 
 
 def _sections(exercise: str, lesson: str, wanted: Any, headings: Mapping[int, str]) -> tuple[str, ...]:

@@ -9,7 +9,7 @@ from typing import Any
 
 from coursework.course.course import Course
 from coursework.course.exercise import CourseExercise
-from coursework.course.lessons import taught_by
+from coursework.course.lessons import check_parts, taught_by
 from coursework.course.variant import Variant
 from coursework.errors import BadCourse, CourseworkError, Starved, nearest
 from coursework.issuing.issued import Issued
@@ -61,7 +61,9 @@ class PracticeOf:
     def _taught(self, exercise: CourseExercise, lang: str) -> tuple[Lesson, ...]:
         key = exercise.name, lang
         if key not in self._lessons:
-            self._lessons[key] = taught_by(exercise.folder, exercise.name, lang)
+            taught = taught_by(exercise.folder, exercise.name, lang)
+            check_parts(exercise.name, [part.id for part in exercise.spec.parts], taught)
+            self._lessons[key] = taught
         return self._lessons[key]
 
     def _asked(self, exercise: str, seed: int, lang: str) -> tuple[Question, ...]:

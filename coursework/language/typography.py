@@ -6,8 +6,8 @@ import re
 
 from coursework.language.numbers import NARROW_SPACE
 
-# Between letters, also before italics, a formula, a quotation, the next piece; after the s of a possessive. What
-# stands between two such signs is a quotation, and keeps both.
+# Between letters, also before italics, a formula, a quotation, the next piece; after the s of a possessive.
+# What stands between two such signs is a quotation, and keeps both.
 _APOSTROPHE = re.compile(r"(?<!\w)'[^'\n]*'(?!\w)|(?<=\w)'(?=[\w*$«]|\Z)|(?<=s)'(?=[\s,.;:!?)])")
 _UNIT = re.compile(
     r"(?<=\d)[ \u00a0](?=%|(?:[kcmµ]?m|k?g|[kmM]?N|[kMm]?W|[kMm]?J|Hz|m?s|min|h|rad|tr|rev|rpm)"

@@ -279,6 +279,8 @@ def test_a_course_may_offer_no_other_variant_and_says_which_lesson_teaches_what(
         ('[lessons]\ncrank_pin = "rod"', "no lesson 'rod'; did you mean 'rods'"),
         ('[lessons]\ncrank_pin = { lesson = "rods", sections = [3] }', "no section 3; available: 1, 2"),
         ("[lessons]\ncrank_pin = 3", "found 3"),
+        ('[lessons]\ncrank_pin = { lesson = "rods", parts = "x" }', r'write parts = \["x"\]; found \'x\''),
+        ('[lessons]\ncrank_pin = { lesson = "rods", parts = ["w"] }', "has no question 'w'.*; available: "),
         ("[feedback]\npractise = false", "did you mean 'practice'"),
         ("[feedback]\npractice = 1", "practice is true or false"),
     ):

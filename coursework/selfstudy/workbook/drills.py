@@ -18,7 +18,7 @@ from typing import Any
 from coursework.course.course import Course
 from coursework.course.exercise import CourseExercise
 from coursework.course.folder import Folder
-from coursework.course.lessons import practised, taught_by
+from coursework.course.lessons import check_parts, practised, taught_by
 from coursework.course.variant import Variant
 from coursework.errors import BadCourse, CourseworkError, nearest
 from coursework.issuing.issuing import distinct_variants
@@ -165,6 +165,7 @@ def _placed(
     """
     taught = taught_by(exercise.folder, exercise.name, lesson.lang)
     ids = [part.id for part in exercise.spec.parts]
+    check_parts(exercise.name, ids, taught)
     if wrong := [one for one in stated if one not in ids]:
         raise BadCourse(f"{_TABLE}: {exercise.name} has no question {wrong[0]!r}{nearest(wrong[0], ids)}")
     placed: dict[str, set[str]] = {}

@@ -11,7 +11,14 @@ from typing import Any, NamedTuple
 from coursework.course.chapters import Chapter
 from coursework.course.course import Course
 from coursework.course.folder import Folder
-from coursework.course.lessons import lesson_file, lesson_sections, lesson_title, read_text, taught_by
+from coursework.course.lessons import (
+    check_parts,
+    lesson_file,
+    lesson_sections,
+    lesson_title,
+    read_text,
+    taught_by,
+)
 from coursework.errors import BadCourse, CourseworkError, counted, nearest
 from coursework.language.words import words
 from coursework.markup.links import TERM, TextLink, links
@@ -308,8 +315,8 @@ def faults(course: Course[Any], name: str) -> tuple[str, ...]:
 
 
 def order_faults(course: Course[Any]) -> tuple[str, ...]:
-    """Return the faults in the order of a course, a sentence each: missing titles, and unknown names in
-    ``[lessons]``."""
+    """Return the faults in the order of a course, a sentence each: missing titles, and unknown names or
+    questions in ``[lessons]``."""
     folder = course.folder
     results = [
         f"exercises/course.toml: chapter {chapter.number}{where} has no title in {lang!r}"
@@ -321,7 +328,9 @@ def order_faults(course: Course[Any]) -> tuple[str, ...]:
     for lang in folder.languages:
         try:
             for name in folder.names:
-                taught_by(folder, name, lang)
+                taught = taught_by(folder, name, lang)
+                if any(lesson.parts for lesson in taught):
+                    check_parts(name, [part.id for part in course[name].spec.parts], taught)
         except CourseworkError as fault:
             return (*results, str(fault))
     return tuple(results)
