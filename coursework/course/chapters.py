@@ -19,6 +19,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from itertools import count, product
 from string import ascii_uppercase
 from typing import Any
 
@@ -98,7 +99,7 @@ def chapters(
     """
     if not isinstance(stated, list) or not all(isinstance(entry, Mapping) for entry in stated):
         raise BadCourse(f"{source}: chapters: write {_FORM}; found {stated!r}")
-    letters = iter(ascii_uppercase)
+    letters = ("".join(row) for size in count(1) for row in product(ascii_uppercase, repeat=size))
     result = tuple(
         _chapter(k, entry, f"{source}: chapter {k}", letters) for k, entry in enumerate(stated, start=1)
     )

@@ -50,6 +50,13 @@ def test_chapters_are_read_in_their_order():
     assert other.needs["slides"] == ("rods", "two")
 
 
+def test_appendices_have_letters_of_their_own_beyond_the_alphabet():
+    stated = '[[chapters]]\ntitle = { en = "A" }\nappendix = true\n' * 54
+    labels = [chapter.label for chapter in read(stated)]
+    assert (labels[0], *labels[25:28], labels[53]) == ("A", "Z", "AA", "AB", "BB")
+    assert len(set(labels)) == 54
+
+
 @each_row(
     ("was", "now", "told"),
     [
