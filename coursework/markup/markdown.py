@@ -197,7 +197,7 @@ def _typst(node: SyntaxTreeNode, lang: str) -> str:
             # The function call, not the mark: a mark inside a word would print as itself.
             return f"#{'emph' if node.type == 'em' else 'strong'}[{inside()}];"
         case "code_inline":
-            return f"#raw({typst_string(node.content)});"
+            return _typst_code(node.content, lang)
         case "fence" | "code_block":
             return f"#raw(block: true, {typst_string(node.content.rstrip())})\n\n"
         case "math_inline":
@@ -222,6 +222,21 @@ def _typst(node: SyntaxTreeNode, lang: str) -> str:
         case "table":
             return _typst_table(node, lang)
     raise BadStatement(f"the text holds a {node.type}, which a sheet cannot print")
+
+
+#: Code in running text that may be the name with which a symbol is typed.
+_NAME = re.compile(r"[A-Za-z]+(?:\d+|[A-Z])?(?:_d?dot)?")
+
+
+def _typst_code(code: str, lang: str) -> str:
+    """Return code in running text: a symbol in place of its name, since nobody types on paper; other code as
+    it is."""
+    from coursework.model import symbol_of
+
+    symbol = symbol_of(code) if _NAME.fullmatch(code) else ""
+    return (
+        typst_formula(symbol, lang) if symbol and "mathrm" not in symbol else f"#raw({typst_string(code)});"
+    )
 
 
 def _number(formula: SyntaxTreeNode) -> str:

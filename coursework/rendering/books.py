@@ -16,8 +16,7 @@ from coursework.errors import bare_letters
 from coursework.language.typography import typeset
 from coursework.language.words import words
 from coursework.markup.links import MACHINE, TERM, WORD, TextLink, relinked
-from coursework.markup.markdown import INDEX, anchor, typst_formula
-from coursework.model import symbol_of
+from coursework.markup.markdown import INDEX, anchor
 from coursework.rendering import html, papers, pdf, views
 from coursework.rendering.environment import render
 from coursework.rendering.keeping import keeping
@@ -39,9 +38,6 @@ _MARKS = {TERM: INDEX, WORD: f"#{WORD}", MACHINE: f"#{MACHINE}"}  #: where the m
 _TALL = 78  #: mm that a drawing of a lesson takes at most
 #: A paragraph that stands above what it names.
 _RUN_IN = re.compile(r"\*\*[^*\n]+\*\*|(?![-*>|\d ])(?s:.){,400}:")
-
-#: Code in running text that may be a symbol's name.
-_SPELLED = re.compile(r'#raw\("([A-Za-z]+(?:\d+|[A-Z])?(?:_d?dot)?)"\);')
 
 # -------------------------------------------------------------------------- PDF
 
@@ -68,17 +64,9 @@ def typst_source(folders: Sequence[Path], book: Book, paper: str = "a4", *, apar
     names["exercises_of"] = partial(_own_exercises, book)
     body = Markup(render(env, "book/book.typ.j2", names))
     # The parts of a paper are those of an exercise in a book.
-    source = render(
+    return render(
         env, "parts/page.typ.j2", names | {"bodies": [body], "printed": True, "heading": {"lang": book.lang}}
     )
-    return _SPELLED.sub(lambda name: _symbol(name, book.lang), source)
-
-
-def _symbol(spelled: re.Match[str], lang: str) -> str:
-    """Return the symbol whose name an equation is typed with, since nobody types on paper; any other code as
-    it is."""
-    symbol = symbol_of(spelled[1])
-    return spelled[0] if "mathrm" in symbol else typst_formula(symbol, lang)
 
 
 def _cited_exercises(book: Book) -> dict[str, str]:

@@ -21,6 +21,7 @@ from coursework.cli import run
 from coursework.errors import BadCourse, BadInput, UnknownName
 from coursework.language.words import languages
 from coursework.rendering.books import typst_source
+from coursework.rendering.pdf import source as sheet_source
 from coursework.rendering.renderer import renderer_of
 from coursework.selfstudy.workbook.binding import bound
 from coursework.selfstudy.workbook.files import files, lesson_notebook
@@ -271,12 +272,15 @@ def test_paper_prints_the_symbols_that_equations_are_typed_with(course, lang):
         for k, variant in enumerate(course[name].variant(3, lang) for name in typed)
     )
     book = Book(lang, "", 0, (BookChapter(1, "", (BookSection(None, asked),)),), True)
-    source = typst_source(renderer_of(course.folder).template_folders, book)
-    codes = set(re.findall(r'#raw\("(.*?)"\)', source))
+    folders = renderer_of(course.folder).template_folders
     names = {name for one in typed for part in course[one].spec.parts for name in part.variables}
     assert {"phi_dot", "theta3"} <= names
-    assert codes & names == set()
-    assert "dot(ϕ)" in source
+    for source in (typst_source(folders, book), sheet_source(folders, [one.handout for one in asked])):
+        codes = set(re.findall(r'#raw\("(.*?)"\)', source))
+        assert codes & names == set()
+        assert "dot(ϕ)" in source
+    page = renderer_of(course.folder).html(asked[0].handout)
+    assert any(f"<code>{name}</code>" in page for name in names), "where one types, the names stay"
 
 
 class _Pages(HTMLParser):
