@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence
+from types import MappingProxyType
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -36,6 +37,7 @@ def compare(
     results: Mapping[str, Any],
     lang: str = "fr",
     angles: Collection[str] = (),
+    units: Mapping[str, str] = MappingProxyType({}),
 ) -> PredictionTable:
     """Return the predictions with their outcomes, for display in a notebook cell.
 
@@ -51,31 +53,29 @@ def compare(
         Language of what is said.
     angles
         The names of what is an angle in degrees; a prediction in degrees makes it one.
+    units
+        The units of other results, by their names.
 
     >>> print(compare({"a": 2, "b": None}, {"a": 2.1, "b": 5}, "en"))
     - ✓ a: predicted 2, found 2.1
     - · b: no prediction, found 5
     """
     texts = words(lang)["study"]
-    lines = []
+    lines, outcomes = [], []
     for name, value in results.items():
         guess = unwrapped(predicted.get(name))
         agrees = not is_blank(guess) and _agree(guess, unwrapped(value), name in angles)
         mark = "·" if is_blank(guess) else "✓" if agrees else "✗"
         line = texts["not_predicted"] if is_blank(guess) else texts["predicted"]
-        lines.append(
-            f"- {mark} "
-            f"{line.format(name=name, said=_outcome_text(guess, lang), found=_outcome_text(value, lang))}"
-        )
+        found = _outcome_text(value, lang, "°" if name in angles else units.get(name, ""))
+        lines.append(f"- {mark} {line.format(name=name, said=_outcome_text(guess, lang), found=found)}")
+        outcomes.append(f"- {name}{words(lang)['sheet']['colon']} {found}")
     for name, guess in predicted.items():
         if name not in results and not is_blank(guess):
             line = texts["refused"]["lesson_name"].format(name=name, said=_outcome_text(guess, lang))
             lines.append(f"- ? {line} {would_do(lang, str(name), list(results))}")
     displayed = PredictionTable(lang, "\n".join(lines))
-    displayed.outcome = "\n".join(
-        f"- {name}{words(lang)['sheet']['colon']} {_outcome_text(value, lang)}"
-        for name, value in results.items()
-    )
+    displayed.outcome = "\n".join(outcomes)
     return displayed
 
 
@@ -92,12 +92,13 @@ def _agree(guess: Any, value: Any, is_angle: bool) -> bool:
     return any(abs(g - value) <= max(_NEAR * abs(value), _NEAR_ZERO) for g in guesses)
 
 
-def _outcome_text(value: Any, lang: str) -> str:
+def _outcome_text(value: Any, lang: str, unit: str = "") -> str:
     texts = words(lang)["study"]
     if isinstance(value, (bool, np.bool_)):
         return texts["yes"] if value else texts["no"]
     if isinstance(value, (int, float, np.number)):
-        return localise(significant(float(value)), lang)
+        space = "" if unit in ("", "°") else "\N{NO-BREAK SPACE}"
+        return f"{localise(significant(float(value)), lang)}{space}{unit}"
     return str(value)
 
 

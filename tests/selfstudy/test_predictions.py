@@ -335,6 +335,14 @@ def test_an_angle_is_near_whole_turns_apart_where_it_is_named_as_one():
     assert str(coursework.compare({"a": 20}, {"a": 0}, "fr", angles=("a",))).startswith("- ✗")
 
 
+def test_a_result_is_told_with_its_unit():
+    predicted, found = {"speed": "630", "turn": None}, {"speed": 640.0, "turn": 12.5}
+    told = coursework.compare(predicted, found, "en", angles=("turn",), units={"speed": "mm/s"})
+    assert told.outcome == "- speed: 640\N{NO-BREAK SPACE}mm/s\n- turn: 12.5°"
+    shown = str(told).replace("\N{NO-BREAK SPACE}", " ").splitlines()
+    assert shown == ["- ✓ speed: predicted 630, found 640 mm/s", "- · turn: no prediction, found 12.5°"]
+
+
 @BOTH
 def test_a_lesson_says_which_name_nothing_has_come_out_of(lang):
     said = str(coursework.compare({"facteru": 2, "other": None}, {"facteur": 2}, lang))
