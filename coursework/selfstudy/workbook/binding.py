@@ -15,6 +15,7 @@ from coursework.course.variant import Variant
 from coursework.errors import BadCourse, BadInput
 from coursework.issuing.issuing import distinct_variants
 from coursework.language.words import words
+from coursework.markup.links import links
 from coursework.selfstudy.workbook.concordance import (
     SoughtEntry,
     entries_of,
@@ -27,7 +28,17 @@ from coursework.selfstudy.workbook.lessons import lesson_text
 from coursework.selfstudy.workbook.matter import matter_of, title_page
 from coursework.selfstudy.workbook.summaries import summary_of
 from coursework.sheets.answer_sheet import answer_sheet
-from coursework.sheets.book import Book, BookChapter, BookExercise, BookSection, DrillGroup, Judgement
+from coursework.sheets.book import (
+    BlanksPiece,
+    Book,
+    BookChapter,
+    BookExercise,
+    BookSection,
+    DrillGroup,
+    Judgement,
+    LessonText,
+    ProsePiece,
+)
 from coursework.sheets.handout import handout
 
 _FAR = 500_000  #: seeds away from those of a class and of self-study: a book prints its solutions
@@ -153,20 +164,28 @@ def _chapter(
         sections.append(BookSection(lesson, tuple(exercises), title, drills, judgements))
     lessons = [section.lesson for section in sections if section.lesson]
     cards = tuple(filter(None, (summary_of(course.folder, lesson) for lesson in lessons)))
-    paper = _paper(course, chapter, lang, seed) if course.folder.book_place.is_dir() else ()
+    paper = _paper(course, chapter, lessons, lang, seed) if course.folder.book_place.is_dir() else ()
     sort = "appendix" if chapter.appendix else "chapter"
     return BookChapter(
         chapter.number, chapter.title(lang), tuple(sections), cards, paper, chapter.label, sort
     )
 
 
-def _paper(course: Course[Any], chapter: Chapter, lang: str, seed: int) -> tuple[BookExercise, ...]:
+def _paper(
+    course: Course[Any], chapter: Chapter, lessons: Sequence[LessonText], lang: str, seed: int
+) -> tuple[BookExercise, ...]:
     """Return an examination paper on a chapter: the last exercise of each section, then those before, with
-    numbers of their own."""
-    rows = zip_longest(*(reversed(section.exercises) for section in chapter.sections))
+    numbers of their own. A chapter that has none poses those that its lessons work out, then those that they
+    name; an appendix has no paper of that kind."""
+    posed = [section.exercises[::-1] for section in chapter.sections]
+    if not chapter.exercises and not chapter.appendix:
+        posed = [_named(course, lesson) for lesson in lessons]
+    rows = zip_longest(*posed)
     chosen: list[BookExercise] = []
     points = 0.0
     for name in (name for row in rows for name in row if name):
+        if name in {one.handout.exercise for one in chosen}:
+            continue
         if points >= _PAPER_POINTS or len(chosen) == _PAPER_EXERCISES:
             break
         variant = _variant(course[name], lang, seed, _PAPER)
@@ -178,6 +197,19 @@ def _paper(course: Course[Any], chapter: Chapter, lang: str, seed: int) -> tuple
         points += sheet.points
         chosen.append(BookExercise(f"{chapter.number}.{len(chosen) + 1}", sheet, answer_sheet(variant)))
     return tuple(chosen)
+
+
+def _named(course: Course[Any], lesson: LessonText) -> tuple[str, ...]:
+    """Return the exercises that a lesson works out, then those to which its text leads."""
+    worked = [piece.exercise for piece in lesson.pieces if isinstance(piece, BlanksPiece)]
+    linked = [
+        link.name
+        for piece in lesson.pieces
+        if isinstance(piece, ProsePiece)
+        for link in links(piece.text)
+        if link.kind == "exercise"
+    ]
+    return tuple(name for name in dict.fromkeys((*worked, *linked)) if name in course.folder.names)
 
 
 def _variant(exercise: CourseExercise[Variant], lang: str, seed: int, further: int = 0) -> Variant:

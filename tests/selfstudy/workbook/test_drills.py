@@ -231,3 +231,14 @@ def test_a_lesson_without_exercises_has_no_drills_in_its_heading(small):
     book = bound(course, "en", answers="odd")
     assert "<h2>True or false, lesson 1</h2>" in renderer.book_pages(book)["rods.html"]()
     assert "Drills, lesson" not in "".join(page_texts(renderer.book_pdf(book)))
+
+
+@pytest.mark.parametrize(("also", "paper"), [("", ["crank_pin"]), ("\nappendix = true", [])])
+def test_a_chapter_without_exercises_has_a_paper_of_those_that_its_lessons_name(small, also, paper):
+    settings, lesson = small / "exercises/course.toml", small / "exercises/lessons/rods.en.md"
+    bare = settings.read_text("utf-8").replace('exercises = ["crank_pin"]\n', "")
+    settings.write_text(bare.replace('{ en = "Pins" }', '{ en = "Pins" }' + also), "utf-8")
+    lesson.write_text("# Rods\n\n## 1. One\n\nA rod. See [the pin](exercise:crank_pin).\n", "utf-8")
+    own, others = bound(coursework.open_course(small), "en").chapters
+    assert [one.handout.exercise for one in own.paper] == paper
+    assert [one.handout.exercise for one in others.paper] == ["crank_pin"]
