@@ -263,7 +263,12 @@ def _fill(
             variant_name = f"{drill.exercise} {drill.seed} "
             asked = variant_name + drill.quantity
             given = {variant_name + name for name in drill.values if name not in one.variant.used}
-            same = (drill.text, f"{drill.exercise} {drill.answer}", asked, *(f"{name}?" for name in given))
+            same = (
+                drill.text,
+                f"{drill.exercise} {drill.quantity} {drill.result}",
+                asked,
+                *(f"{name}?" for name in given),
+            )
             if not any(posed[told] for told in same):  # nor does the answer of one stand in another
                 posed.update((*same[:3], *given, f"{asked}?", *drill.kinds))
                 found.append(drill)
@@ -292,7 +297,7 @@ def _drill(possible: _Possible) -> Drill | None:
             part.quantity,
             values,
             answer,
-            f"{question.prompt} {possible.back}",
+            f"{variant.exercise.name} {part.id} {possible.back}",
         )
         if possible.back:
             drill = _turned(variant, replace(question, unit=""), drill)

@@ -59,14 +59,11 @@ def test_drills_are_answered_from_what_they_give(course):
 def test_a_drill_has_the_grade_that_is_stated(course):
     """A sum has one dot, also backwards; a case or an angle to choose two at least; backwards one more."""
     _, drills = drilled(course, "grashof_and_coupler_curves")
-    asked = {drill.grade: [] for drill in drills}
-    for drill in drills:
-        asked[drill.grade].append(drill.asked)
-    assert all("sum" in one for one in asked[1])
-    assert any("True" in one for one in asked[1])
-    assert not [one for grade in (2, 3) for one in asked.get(grade, ()) if "sum" in one]
+    sums = {drill.number for drill in drills if "sum $" in drill.text}
+    assert {drill.number for drill in drills if drill.grade == 1} == sums
+    assert any("what is" in drill.text for drill in drills if drill.number in sums)
     _, drills = drilled(course, "velocities")
-    of_a_bar = [drill for drill in drills if "$v_{BA}$" in drill.asked]
+    of_a_bar = [drill for drill in drills if "$v_{BA}$" in drill.text]
     assert {(drill.asked.rpartition(" ")[2], drill.grade) for drill in of_a_bar} >= {
         ("False", 1),
         ("True", 2),
@@ -92,9 +89,15 @@ def test_every_drill_stands_under_a_section_that_teaches_it_and_says_what_it_is_
     }
     assert {group.section for group in groups} <= taught
     assert all(group.setting for group in groups if group.exercise not in alone and groups.index(group) == 0)
-    (first, *_) = (group for group in groups if group.exercise == "coriolis")
-    assert first.section.startswith("6. ")
-    assert "relative_motion" not in {drill.quantity for group in groups for drill in group.drills}
+    placed = {
+        (group.exercise, drill.asked.split()[1]): int(group.section.partition(".")[0])
+        for group in groups
+        for drill in group.drills
+    }
+    assert ("coriolis", "relative_motion") not in placed
+    wanted = {place: stated[place[0]].get("sections", {}).get(place[1], placed[place]) for place in placed}
+    assert placed == wanted
+    assert placed["coriolis", "direction"] == 7
 
 
 @pytest.mark.slow
@@ -124,6 +127,8 @@ def test_another_book_has_other_drills_and_both_languages_have_the_same(course):
     numbers = {drill.text for drill in first if drill.values}
     assert numbers.isdisjoint(drill.text for drill in other)
     assert [drill.values for drill in first] == [drill.values for drill in french]
+    both = [drilled(course, "instant_centres_and_centrodes", 6, lang)[1] for lang in ("en", "fr")]
+    assert len({tuple((drill.asked, drill.grade, drill.seed) for drill in drills) for drills in both}) == 1
     assert all(drill.seed >= 700_000 for drill in first)
 
 
