@@ -100,6 +100,12 @@ def joints_of_more_freedoms():
     return _gallery("fghij", "spherical", "planar", "annular", "line_contact", "point_contact")
 
 
+def joints_to_be_named():
+    """Six joints in an order that says nothing."""
+    names = ("annular", "cylindrical", "point_contact", "revolute", "planar", "spherical")
+    return _gallery("abcdef", *names)
+
+
 def parallel_graph():
     """Several joints between two bodies, and the one that does as much."""
     one, two = {"1": 0j, "2": complex(50)}, {"1": complex(86), "2": complex(124)}

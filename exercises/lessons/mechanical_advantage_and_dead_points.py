@@ -20,6 +20,8 @@ from coursework.figures import (
 from coursework.kinematics.dyads import rrr
 from coursework.kinematics.vectors import cross
 
+from ._machines import rows_of
+
 R1, R2, R3, R4 = 200.0, 60.0, 180.0, 140.0
 
 
@@ -172,3 +174,25 @@ def jack():
         pin(B, "B"),
         paper_mm=(85, 70),
     )
+
+
+def drivers_to_be_found():
+    """Four positions without a name: crank and coupler in line, no bars in line, coupler and rocker in line,
+    a dead centre."""
+    reach = rrr(0j, 80 + 0j, 25 + 70, 50, 1)
+    flat = rrr(0j, 80 + 0j, 50, 44 + 60, 1)
+    free = complex(polar(25, 100))
+    linkages = (
+        (25 * reach / abs(reach), reach, 80 + 0j),
+        (free, rrr(free, 80 + 0j, 70, 50, 1), 80 + 0j),
+        (flat, flat + 44 * (80 - flat) / abs(80 - flat), 80 + 0j),
+    )
+    drawings = [
+        [link(0, A), link(A, B), link(C, B), ground_pivot(0), ground_pivot(C), pin(A), pin(B)]
+        for A, B, C in linkages
+    ]
+    A, B = 25 + 0j, 85 + 0j
+    drawings.append(
+        [rail(60 + 0j, 105 + 0j), link(0, A), link(A, B), slider(B), ground_pivot(0), pin(A), pin(B)]
+    )
+    return Figure(*rows_of(drawings, 4, 112 + 70j), paper_mm=(165, 45))

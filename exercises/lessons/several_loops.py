@@ -20,6 +20,8 @@ from coursework.figures import (
 )
 from coursework.kinematics.dyads import rrp, rrr
 
+from ._panels import graph, panels
+
 
 def _two_loops():
     """Pins O, A, B, C, D, E, F of the linkage with a plate."""
@@ -185,3 +187,19 @@ def three_loops_vectors():
         ),
         paper_mm=(110, 90),
     )
+
+
+def graphs_to_be_counted():
+    """Four graphs without letters: a ring, two of six bodies that have as many joints, and three loops."""
+    square = {1: 0j, 2: 32j, 3: 32 + 32j, 4: 32 + 0j}
+    hexagon = {1: 0j, 2: 32j, 3: 28 + 44j, 4: 56 + 32j, 5: 56 + 0j, 6: 28 - 12j}
+    parted = {1: 16j, 2: 28 + 44j, 3: 56 + 16j, 4: 44 - 12j, 5: 12 - 12j, 6: 28 + 16j}
+    octagon = {k: 28 + 10j + 30 * complex(polar(1, 202.5 - 45 * k)) for k in range(1, 9)}
+    chains = (
+        (square, [(k, k % 4 + 1) for k in range(1, 5)]),
+        (hexagon, [*((k, k % 6 + 1) for k in range(1, 7)), (1, 4)]),
+        (parted, [(1, 2), (2, 3), (1, 6), (6, 3), (3, 4), (4, 5), (5, 1)]),
+        (octagon, [*((k, k % 8 + 1) for k in range(1, 9)), (1, 4), (5, 8)]),
+    )
+    drawings = [graph(places, [(pair, "") for pair in pairs], radius=6.5) for places, pairs in chains]
+    return Figure(*panels(*drawings, across=80, down=30), paper_mm=(165, 45))
