@@ -29,8 +29,8 @@ from coursework.linkages.questions import QuestionWriter
 from coursework.linkages.sentences import exercise_text, solution_text, spoken
 from coursework.linkages.still_sides import equal_in_all, refuse_still_sides
 from coursework.linkages.vectors import PAPER_MM, POLYGONS
+from coursework.markup.symbols import symbol_of
 from coursework.messages import Message, as_message
-from coursework.model import symbol_of
 
 _IMPORTS = """\
 import numpy as np

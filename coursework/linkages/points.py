@@ -19,8 +19,8 @@ from coursework.linkages.entries import GROUND, AssemblyEntry, GivenEntry, Linka
 from coursework.linkages.expressions import DEGREES
 from coursework.linkages.groups import groups_of
 from coursework.linkages.terms import Heading, Plane, Sum
+from coursework.markup.symbols import symbol_of
 from coursework.messages import Message
-from coursework.model import symbol_of
 
 Chain: TypeAlias = list[tuple[str, str, str, str]]  #: vectors as code: length, angle, sign, turn
 

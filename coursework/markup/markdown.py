@@ -24,6 +24,7 @@ from coursework.language.typography import typeset
 from coursework.language.words import words
 from coursework.markup.line import to_line
 from coursework.markup.spoken import spoken
+from coursework.markup.symbols import symbol_of
 
 
 @cache
@@ -231,8 +232,6 @@ _NAME = re.compile(r"[A-Za-z]+(?:\d+|[A-Z])?(?:_d?dot)?")
 def _typst_code(code: str, lang: str) -> str:
     """Return code in running text: a symbol in place of its name, since nobody types on paper; other code as
     it is."""
-    from coursework.model import symbol_of
-
     symbol = symbol_of(code) if _NAME.fullmatch(code) else ""
     return (
         typst_formula(symbol, lang) if symbol and "mathrm" not in symbol else f"#raw({typst_string(code)});"

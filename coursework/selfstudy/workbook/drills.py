@@ -53,7 +53,7 @@ _TABLE = "exercises/book/drills.toml"
 
 @dataclass(frozen=True)
 class _Possible:
-    """What a drill may ask: a quantity from what it gives, or ``back`` to a datum."""
+    """Question that a drill may be: a quantity from what it gives, or ``back`` to one of these."""
 
     variant: Variant
     part: Part

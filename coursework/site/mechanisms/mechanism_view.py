@@ -21,8 +21,8 @@ from coursework.course.folder import course_folder
 from coursework.errors import CourseworkError
 from coursework.language.numbers import localise
 from coursework.language.words import languages, words
+from coursework.markup.symbols import symbol_of
 from coursework.messages import Message, localised, messages_in
-from coursework.model import symbol_of
 from coursework.rendering.displayed import DisplayedAnimation
 from coursework.rendering.environment import render
 from coursework.rendering.html import environment_of
