@@ -139,6 +139,8 @@ def _mathml_row(items: tuple[Node, ...], lang: str) -> str:
 
 def _mathml_script(node: Script, lang: str) -> str:
     base = node.base
+    if isinstance(node.above, Symbol) and node.above.text == "∘" and not (node.below or node.primes):
+        return _tag("mrow", _mathml(base, lang), _tag("mtext", "°"))  # at the height of degrees in a text
     tops = ([_operator("′" * node.primes)] if node.primes else []) + (
         [_mathml(node.above, lang)] if node.above else []
     )

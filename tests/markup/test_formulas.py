@@ -156,6 +156,18 @@ def test_a_formula_fits_on_one_line_of_a_terminal(tex, line):
     assert to_line(tex, "en") == line
 
 
+@each_row(
+    ("tex", "lang", "body"),
+    [
+        (r"90^\circ", "en", "<mrow><mn>90</mn><mtext>°</mtext></mrow>"),
+        (r"\num{24.3}^{\circ}", "fr", "<mrow><mn>24,3</mn><mtext>°</mtext></mrow>"),
+        (r"x^2", "en", "<msup><mi>x</mi><mn>2</mn></msup>"),
+    ],
+)
+def test_degrees_stand_at_the_height_of_their_number(tex, lang, body):
+    assert body in to_mathml(tex, lang)
+
+
 def test_the_dot_of_a_unit_stands_close_in_every_back_end():
     for tex in (r"\mathrm{N\cdot m}", r"\mathrm{N{\cdot}m}"):
         assert to_typst(tex, "fr") == '"N·m"'
