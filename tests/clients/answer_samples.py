@@ -4,12 +4,15 @@ does."""
 from __future__ import annotations
 
 import random
+import re
 from typing import NamedTuple
 
 from coursework.language.numbers import significant
 from coursework.platforms.posed import CHOICE, CHOICES, NUMBER
 
 _NONSENSE = ("abc", "?", "12 or 13", "2*100", "\u22125", "1 2 3 m", "pi/3", "I do not know", "-", "1e400")
+
+_THOUSANDS = re.compile(r"-?[1-9]\d{0,2}\.\d{3}")  #: a person looks where 1000 times as much would be right
 
 
 class Given(NamedTuple):
@@ -69,7 +72,8 @@ def _right(posed, part):
 def _wrong(posed, part):
     for one in posed.intervals:
         if not one.is_right and not one.turns:
-            yield given("known error", significant(one.value, 6))
+            digits = significant(one.value, 6)
+            yield given("known error", digits, *(("unreadable",) if _THOUSANDS.fullmatch(digits) else ()))
     right = posed.intervals[0]
     half = right.high - right.value
     for factor in (1.01, 1.5, -1.01, 3):
