@@ -1,5 +1,5 @@
 """A student's pages in Chromium, as a telephone on a slow line has them: bytes cold and warm, first paint,
-taps to a marked answer, a polygon constructed by touch, axe.
+layout shift, taps to a marked answer, a polygon constructed by touch, axe.
 
     python benchmarks/student_page.py [EXERCISE]      slotted_mechanism; a minute
 
@@ -28,6 +28,13 @@ DRAWN = "velocity_polygon"  #: with a surface to draw on
 SCRIPTED = (DRAWN, "acceleration_polygon", "two_circles", "havens_construction", "crank_shaper_drawn")
 #: Seconds of a tap that is aimed, and of a key (Card, Moran and Newell, 1983, rounded up).
 TAP, KEY = 2.0, 0.5
+#: How far what is seen moved while the page came: the browser's cumulative layout shift.
+SHIFT = """() => new Promise((done) => {
+  let moved = 0;
+  const add = (list) => list.getEntries().forEach((one) => { moved += one.value; });
+  new PerformanceObserver(add).observe({ type: "layout-shift", buffered: true });
+  setTimeout(() => done(moved), 100);
+})"""
 PAINT = "performance.getEntriesByName('first-contentful-paint')[0].startTime"
 
 
@@ -54,11 +61,12 @@ class Measured:
 
 
 def weighed(context: Any, place: str, called: str) -> tuple[Any, list[tuple[str, str]]]:
-    """Return the page, and its rows: kilobytes and first paint, cold and warm."""
+    """Return the page, and its rows: kilobytes, first paint and layout shift, cold and warm."""
     measured, rows = Measured(context), []
     for state, at in (("cold", place), ("warm", "")):
         size, paint = measured.open(at or measured.page.url)
         rows += [(f"{called}, {state}, kB", f"{size:.0f}"), ("first paint, s", f"{paint:.2f}")]
+        rows.append(("layout shift", f"{measured.page.evaluate(SHIFT):.3f}"))
     return measured.page, rows
 
 

@@ -3,7 +3,7 @@ read aloud, it is what its title says, a thumb hits what there is, nothing fails
 
 import pytest
 from site_browser import chromium, context_of, cut_in_print, low, serious, served, too_wide, watched
-from site_lived import NO_PAGES, STUDENT, Lived, shown
+from site_lived import EXERCISE, NO_PAGES, STUDENT, Lived, shown
 from site_walk import Forms
 from tables import each_row
 
@@ -135,6 +135,22 @@ def test_the_keyboard_stands_at_nothing_hidden_unmarked_or_idle(lived, lang, siz
     context.close()
     assert wrong == {}
     assert stops > 300
+
+
+@pytest.mark.parametrize(("lang", "size"), LOOKS)
+def test_a_sheet_is_as_long_before_its_letters_come(lived, lang, size):
+    site, address, browser = lived
+    lengths = []
+    for is_late in (True, False):
+        context = context_of(browser, site, address, STUDENT, lang, size, service_workers="block")
+        if is_late:
+            context.route("**/*.woff2*", lambda one: one.abort())
+        page = context.new_page()
+        page.goto(f"{address}/practice/{EXERCISE}")
+        page.evaluate("document.fonts.ready.then(() => null)")
+        lengths.append(page.evaluate("document.querySelector('main').getBoundingClientRect().height"))
+        context.close()
+    assert lengths[0] == pytest.approx(lengths[1], rel=0.02)
 
 
 def test_a_page_that_a_student_went_back_to_is_not_sent_again(lived):
