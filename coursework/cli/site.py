@@ -24,7 +24,7 @@ from coursework.cli.options import (
     print_notes,
     zone_option,
 )
-from coursework.cli.printing import warn
+from coursework.cli.printing import say, warn
 from coursework.errors import BadInput, unknown
 from coursework.system.extras import libraries
 from coursework.system.limits import MOST_PORT, MOST_VARIANTS, MOST_WORKERS
@@ -36,6 +36,9 @@ if TYPE_CHECKING:
 
 _LIBRARIES = ("argon2", "itsdangerous", "psycopg", "python_multipart", "sqlalchemy", "starlette", "uvicorn")
 _LOOPBACK = "127.0.0.1"
+#: What is said of a site that runs.
+KEPT = "coursework: {url}/ (kept in {where}; Ctrl-C ends it)"
+FOLLOWING = "coursework: {url}/ (follows {where}; Ctrl-C ends it)"
 
 open_option = click.option("--open/--no-open", "opens", help="Open the page in the browser.")
 
@@ -147,7 +150,7 @@ def serve(
         if entrance is Entrance.ACCOUNTS:
             _check_private(database)
         with server.filling(serving), server.working(serving):
-            server.serve(serving, at, workers, partial(_say, public_url, f"kept in {report}", opens))
+            server.serve(serving, at, workers, partial(_tell, KEPT, public_url, report, opens))
 
 
 def _check_private(db: str) -> None:
@@ -258,11 +261,11 @@ def _entrance(host: str, url: str, demo: str | None, *, is_stated: bool) -> Entr
     return Entrance.ACCOUNTS
 
 
-def _say(url: str, where: str, opens: bool) -> None:
+def _tell(words: str, url: str, where: str, opens: bool) -> None:
     """Say the address, and open the browser there, where there is a screen."""
     import webbrowser
 
-    click.echo(f"coursework: {url}/ ({where}; Ctrl-C ends it)")
+    say(words, url=url, where=where)
     has_screen = (
         sys.platform in ("win32", "darwin") or os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY")
     )
@@ -306,7 +309,7 @@ def preview(context: click.Context, exercise: str, port: int, variants: int, lan
     with server.listening(_LOOPBACK, port) as at:
         work = EditedExercise(context.obj, exercise, variants)
         try:
-            announce = partial(_say, _address(_LOOPBACK, at), f"follows {folder.root}", opens)
+            announce = partial(_tell, FOLLOWING, _address(_LOOPBACK, at), str(folder.root), opens)
             server.run(lambda: pages(work, lang), at, ready=announce)
         finally:
             work.end()
