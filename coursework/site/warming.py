@@ -34,6 +34,8 @@ def warm(site: Site, stop: Event) -> None:
         try:
             piece()
         except CourseworkError as fault:
+            if stop.is_set():  # the process that makes lessons ended with the site
+                return
             LOG.error("not ready ahead: %s", type(fault).__name__)
 
 

@@ -8,6 +8,8 @@ from sweeps import HANDFUL, slow
 
 from coursework.course.folder import Folder
 from coursework.database.pool import Pooled, put_pooled
+from coursework.errors import BadCourse
+from coursework.site import warming
 from coursework.site.frame.lru_cache import LRUCache
 from coursework.site.frame.pool import PracticePool
 from coursework.site.warming import warm
@@ -68,6 +70,18 @@ def test_what_is_made_ready_changes_no_page(tmp_path, monkeypatch, order):
     seen = [one.browser(ZOE, "fr").get("/practice").text for one in (cold, ready)]
     assert len({text.partition("<main")[2] for text in seen}) == 1
     assert ready.site.course["grashof"].title("fr") in seen[0]
+
+
+def test_what_ends_with_the_site_is_no_fault(class_of_three, monkeypatch, caplog):
+    stop = Event()
+
+    def ended():
+        stop.set()
+        raise BadCourse("the process that makes lessons has ended")
+
+    monkeypatch.setattr(warming, "_pieces", lambda site: [ended])
+    warm(class_of_three.site, stop)
+    assert caplog.messages == []
 
 
 def test_a_course_that_is_taken_anew_is_read_anew(class_of_three):
