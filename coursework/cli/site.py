@@ -37,8 +37,8 @@ if TYPE_CHECKING:
 _LIBRARIES = ("argon2", "itsdangerous", "psycopg", "python_multipart", "sqlalchemy", "starlette", "uvicorn")
 _LOOPBACK = "127.0.0.1"
 #: What is said of a site that runs.
-KEPT = "coursework: {url}/ (kept in {where}; Ctrl-C ends it)"
-FOLLOWING = "coursework: {url}/ (follows {where}; Ctrl-C ends it)"
+_SITE_RUNS = "coursework: {url}/ (kept in {where}; Ctrl-C ends it)"
+_PREVIEW_RUNS = "coursework: {url}/ (follows {where}; Ctrl-C ends it)"
 
 open_option = click.option("--open/--no-open", "opens", help="Open the page in the browser.")
 
@@ -150,7 +150,7 @@ def serve(
         if entrance is Entrance.ACCOUNTS:
             _check_private(database)
         with server.filling(serving), server.working(serving):
-            server.serve(serving, at, workers, partial(_tell, KEPT, public_url, report, opens))
+            server.serve(serving, at, workers, partial(_tell, _SITE_RUNS, public_url, report, opens))
 
 
 def _check_private(db: str) -> None:
@@ -309,7 +309,7 @@ def preview(context: click.Context, exercise: str, port: int, variants: int, lan
     with server.listening(_LOOPBACK, port) as at:
         work = EditedExercise(context.obj, exercise, variants)
         try:
-            announce = partial(_tell, FOLLOWING, _address(_LOOPBACK, at), str(folder.root), opens)
+            announce = partial(_tell, _PREVIEW_RUNS, _address(_LOOPBACK, at), str(folder.root), opens)
             server.run(lambda: pages(work, lang), at, ready=announce)
         finally:
             work.end()
