@@ -2,12 +2,13 @@
 
 python benchmarks/marking.py [CLASS] [ANSWERS] [FOLDER]
 
-Classes: ``plain`` and ``mixed`` of a million answers to five exercises in 300 variants each, ``course`` of
-200 000 answers to every exercise of the course in 100 variants each; all three unless one is named. Plain:
-digits alone, all right. Mixed: a third is not right. Course: a tenth is wrong, a twentieth is blank or
-nonsense. A quarter each of the wrong ones shows a usual error, a slip of sign or unit, follows from such an
-answer or is nothing that one could name; right ones carry units, commas and powers of ten. Feedback sheets
-are not made. Printed: seconds by the clock, seconds of all processors, and the most memory of one process.
+Classes: ``plain`` and ``mixed`` of a million answers to five exercises in 300 variants each, ``five`` of
+200 000 answers to the same, ``course`` of as many to every exercise of the course in 100 variants each; all
+four unless one is named. Plain: digits alone, all right. Mixed: a third is not right. Five and course: a
+tenth is wrong, a twentieth is blank or nonsense. A quarter each of the wrong ones shows a usual error, a slip
+of sign or unit, follows from such an answer or is nothing that one could name; right ones carry units, commas
+and powers of ten. Feedback sheets are not made. Printed: seconds by the clock, seconds of all processors, and
+the most memory of one process.
 """
 
 from __future__ import annotations
@@ -45,6 +46,7 @@ class Mix(NamedTuple):
 CLASSES = {
     "plain": Mix(1_000_000, EXERCISES, 300, 0.0, 0.0),
     "mixed": Mix(1_000_000, EXERCISES, 300, 0.05, 0.3),
+    "five": Mix(200_000, EXERCISES, 300, 0.05, 0.1),
     "course": Mix(200_000, (), 100, 0.05, 0.1),
 }
 
