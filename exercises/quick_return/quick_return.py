@@ -22,6 +22,16 @@ from coursework.kinematics.dyads import rrp, rrr, side_of
 from coursework.kinematics.vectors import cross
 from coursework.model import Driver, Exercise, Part, chosen, drawn, loop_equations
 
+#: Symbols of what every quick return asks of the working stroke and of the return.
+OF_BOTH_STROKES = {
+    "xC": "x_C",
+    "stroke": "s",
+    "alpha": r"\theta_a",
+    "beta": r"\theta_r",
+    "t_advance": "t_a",
+    "t_return": "t_r",
+}
+
 
 def B(r1, theta1, r2, r3, r4, angle_OAB, B_side):
     OB = abs(r2 - polar(r3, angle_OAB))
@@ -258,12 +268,7 @@ EXERCISE = Exercise(
         "A_side": "A",
         "B_side": "B",
         "angle_OAB": r"\angle OAB",
-        "xC": "x_C",
-        "stroke": "s",
-        "alpha": r"\theta_a",
-        "beta": r"\theta_r",
-        "t_advance": "t_a",
-        "t_return": "t_r",
+        **OF_BOTH_STROKES,
         "mechanical_advantage": r"\lambda",
     },
     figure=figure,

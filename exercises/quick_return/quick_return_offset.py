@@ -18,7 +18,7 @@ from coursework.figures import (
 from coursework.kinematics.dyads import rrp
 from coursework.model import Driver, Exercise, Part, detectable, drawn, loop_equations
 
-from .quick_return import piston_accelerates_visibly, piston_moves_visibly
+from .quick_return import OF_BOTH_STROKES, piston_accelerates_visibly, piston_moves_visibly
 
 
 def rod(r2, r3, e, theta2):
@@ -112,14 +112,7 @@ EXERCISE = Exercise(
             second_rates=("alpha3", "a_C"),
         ),
     ),
-    symbols={
-        "xC": "x_C",
-        "stroke": "s",
-        "alpha": r"\theta_a",
-        "beta": r"\theta_r",
-        "t_advance": "t_a",
-        "t_return": "t_r",
-    },
+    symbols=OF_BOTH_STROKES,
     figure=figure,
     version=2,
     driver=Driver("theta2", "omega2", output="v_C"),

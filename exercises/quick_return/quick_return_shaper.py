@@ -28,6 +28,7 @@ from ._slotted_ram import (
     crank_off_the_axes,
     ram_accelerates_visibly,
 )
+from .quick_return import OF_BOTH_STROKES
 
 
 def lowest_P(r1, r2, r4):
@@ -131,14 +132,7 @@ EXERCISE = Exercise(
             second_rates=("alpha4", "alpha5", "a_C"),
         ),
     ),
-    symbols={
-        "xC": "x_C",
-        "stroke": "s",
-        "alpha": r"\theta_a",
-        "beta": r"\theta_r",
-        "t_advance": "t_a",
-        "t_return": "t_r",
-    },
+    symbols=OF_BOTH_STROKES,
     figure=figure,
     version=2,
     driver=Driver("theta2", "omega2", output="v_C"),

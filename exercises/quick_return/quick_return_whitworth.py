@@ -28,6 +28,7 @@ from ._slotted_ram import (
     crank_off_the_axes,
     ram_accelerates_visibly,
 )
+from .quick_return import OF_BOTH_STROKES
 
 #: What of the two strokes is told by shares: of an angle, the tolerance is the same in every variant.
 STROKES = ("Q", "t_advance", "t_return")
@@ -132,14 +133,7 @@ EXERCISE = Exercise(
             second_rates=("alpha4", "alpha5", "a_C"),
         ),
     ),
-    symbols={
-        "xC": "x_C",
-        "stroke": "s",
-        "alpha": r"\theta_a",
-        "beta": r"\theta_r",
-        "t_advance": "t_a",
-        "t_return": "t_r",
-    },
+    symbols=OF_BOTH_STROKES,
     figure=figure,
     version=2,
     driver=Driver("theta2", "omega2", output="v_C"),
