@@ -172,6 +172,8 @@ EXERCISE = Exercise(
         "pv_b": "p_v p_4",
         "pv_e": "p_v e",
         "v_C": "V_E",
+        "alpha": r"\theta_a",
+        "beta": r"\theta_r",
         "ka": "k_a",
         "q": "p_a",
         "a2": "p_2",

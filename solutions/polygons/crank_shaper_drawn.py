@@ -594,7 +594,7 @@ def figure(r1, r2, r4, r5, h, omega2):
         link(D2, E2),
         link(C, P1),
         link(C, P2),
-        rotation_arrow(C, 1.3 * r2, start, end, label=r"\alpha"),
+        rotation_arrow(C, 1.3 * r2, start, end, label=r"\theta_a"),
         ground_pivot(O, "O"),
         ground_pivot(C, "C"),
         pin(P1, "P'"),

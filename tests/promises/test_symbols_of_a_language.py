@@ -50,6 +50,15 @@ def test_sheets_solutions_and_figures_have_the_symbols_of_their_language(lang):
     assert not {name: found for name in names if (found := foreign(printed_and_drawn(name, lang), lang))}
 
 
+def test_the_arcs_of_the_crank_have_one_symbol_in_all_exercises():
+    arcs = {"alpha": r"\theta_a", "beta": r"\theta_r"}
+    asked = [
+        (name, p.quantity) for name in COURSE.names for p in COURSE[name].spec.parts if p.quantity in arcs
+    ]
+    assert len(asked) > 10
+    assert not [(name, arc) for name, arc in asked if COURSE[name].symbol(arc, "fr") != arcs[arc]]
+
+
 @pytest.mark.parametrize("name", COURSE.names)
 def test_no_sheet_has_a_symbol_of_another_language(name):
     assert not {lang: found for lang in FOREIGN if (found := foreign(printed_and_drawn(name, lang), lang))}
