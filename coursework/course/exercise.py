@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, Generic, Protocol, TypeVar
 import numpy as np
 
 from coursework.course.draws import Draws, Stated
-from coursework.course.folder import MECHANISM, Folder
+from coursework.course.folder import Folder
 from coursework.course.lettering import printed_order
 from coursework.course.records import Records
 from coursework.course.requests import Intake
@@ -120,9 +120,7 @@ class CourseExercise(Generic[V]):
 
     @cached_property
     def _is_mechanism(self) -> bool:
-        """Return True if a mechanism's file states the exercise."""
-        home = self.folder.home("exercises", self.name)
-        return home is not None and home.suffix == MECHANISM
+        return self.folder.mechanism("exercises", self.name) is not None
 
     def plan(
         self, only: Sequence[str] | None = None, *, effects: Iterable[str] | None = None

@@ -106,6 +106,11 @@ class Folder:
             home = self._homes.get((kind, name))
         return home if home is not None and home.exists() else None
 
+    def mechanism(self, kind: str, name: str) -> Path | None:
+        """Return the mechanism's file that states ``KIND/NAME``; None where Python does, or nothing."""
+        home = self.home(kind, name)
+        return home if home is not None and home.suffix == MECHANISM else None
+
     def _modules(self, kind: str) -> dict[str, Path]:
         """Return the modules of ``exercises`` or ``solutions`` by name; shared ones, whose names begin with
         an underscore, are none."""
@@ -148,11 +153,11 @@ class Folder:
         file = f"{name}.{lang}.md.j2"
         folders = self._text_folders(kind, name)
         written = next((folder / file for folder in folders if (folder / file).exists()), None)
-        home = self.home(kind, name)
-        if written is None and home is not None and home.suffix == MECHANISM:
+        mechanism = self.mechanism(kind, name)
+        if written is None and mechanism is not None:
             from coursework.linkages.compiled import CompiledText
 
-            return CompiledText(home, self.relative(home), kind, lang)  # type: ignore[return-value]  # reads as a path
+            return CompiledText(mechanism, self.relative(mechanism), kind, lang)  # type: ignore[return-value]  # reads as a path
         return written or folders[-1] / file
 
     def texts(self, kind: str, name: str) -> dict[str, Path]:
@@ -432,12 +437,12 @@ class Folder:
         BadCourse
             The file cannot be imported; the message names the file, the line and the fault.
         """
-        home = self.home(kind, name)
-        if home is not None and home.suffix == MECHANISM:
+        if (mechanism := self.mechanism(kind, name)) is not None:
             from coursework.linkages.compiled import compiled
 
             dotted = ".".join((self._package, kind, name))
-            return compiled(home, self.relative(home)).module(kind, dotted)
+            return compiled(mechanism, self.relative(mechanism)).module(kind, dotted)
+        home = self.home(kind, name)
         steps = (kind, name) if home is None else home.relative_to(self.root).with_suffix("").parts
         return self._imported(steps, self.source(kind, name))
 

@@ -8,14 +8,17 @@ from __future__ import annotations
 
 import json
 import re
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from coursework.course.folder import Folder
 from coursework.errors import BadCourse, nearest, unknown
+
+if TYPE_CHECKING:
+    from coursework.course.exercise import CourseExercise
 
 _FORM = 'NAME = { lesson = "rods", sections = [1, 2] }'
 _SOURCE = "exercises/course.toml: [lessons]"
@@ -136,7 +139,7 @@ def taught_by(folder: Folder, exercise: str, lang: str) -> tuple[Lesson, ...]:
     return tuple(_taught(folder, exercise, [*placed, *listed], lang))
 
 
-def check_parts(exercise: str, ids: Collection[str], lessons: Sequence[Lesson]) -> None:
+def check_parts(exercise: CourseExercise[Any], lessons: Sequence[Lesson]) -> None:
     """Check that the ``parts`` that lessons help with are questions of the exercise.
 
     Raises
@@ -144,12 +147,12 @@ def check_parts(exercise: str, ids: Collection[str], lessons: Sequence[Lesson]) 
     BadCourse
         One is not.
     """
+    ids = [part.id for part in exercise.spec.parts]
     for part in (part for lesson in lessons for part in lesson.parts):
         if part not in ids:
-            there = ", ".join(ids)
             raise BadCourse(
-                f"{_SOURCE}: {exercise}: parts: the exercise has no question {part!r}{nearest(part, ids)}; "
-                f"available: {there}"
+                f"{_SOURCE}: {exercise.name}: parts: the exercise has no question {part!r}"
+                f"{nearest(part, ids)}; available: {', '.join(ids)}"
             )
 
 

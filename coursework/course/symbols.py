@@ -37,7 +37,7 @@ class Symbols:
         Raises
         ------
         BadCourse
-            They are not texts by texts.
+            The settings state something else than texts.
         """
         tables = settings.get("symbols", {})
         stated = tables.get(lang, {}) if isinstance(tables, Mapping) else tables

@@ -53,7 +53,9 @@ def _values(variant: Variant, marks: Mapping[str, Mark]) -> Iterator[tuple[str, 
 def _polygons(variant: Variant, values: Mapping[str, Any]) -> Iterator[OwnDrawing]:
     polygons = [construction.polygon for construction in stated_polygons(variant)]
     for polygon, parts in zip(polygons, _by_polygon(variant, len(polygons)), strict=True):
-        symbols = {part.id: variant.symbol(part.quantity) for part in parts if part.kind == "point"}
+        symbols = {
+            part.id: variant.exercise.spec.symbol(part.quantity) for part in parts if part.kind == "point"
+        }
         points = {
             symbols[i]: complex(*values[i]) for i in symbols if i in values and symbols[i] in polygon.points
         }

@@ -62,7 +62,7 @@ class PracticeOf:
         key = exercise.name, lang
         if key not in self._lessons:
             taught = taught_by(exercise.folder, exercise.name, lang)
-            check_parts(exercise.name, [part.id for part in exercise.spec.parts], taught)
+            check_parts(exercise, taught)
             self._lessons[key] = taught
         return self._lessons[key]
 

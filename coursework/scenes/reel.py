@@ -107,17 +107,15 @@ class Reel:
             There is no figure at that angle.
         """
         if self.film is not None:
-            return self._labelled(
-                self._stated("figure", self.film.figure, self._with_driver_at(float(angle))).elements
-            )
-        given = self._with_driver_at(wrap(float(angle)))
-        values = {n: v for n, v in given.items() if n in self._graph.leaves}
-        return self._labelled(self._graph.evaluate(("figure",), values)["figure"].elements)
-
-    def _labelled(self, elements: tuple[Element, ...]) -> tuple[Element, ...]:
-        """Return elements with the labels of the variant's language."""
-        symbols = self.variant.exercise.symbols(self.variant.lang)
-        return tuple(element.labelled(symbols) for element in elements) if symbols.stated else elements
+            figure = self._stated("figure", self.film.figure, self._with_driver_at(float(angle)))
+        else:
+            given = self._with_driver_at(wrap(float(angle)))
+            values = {n: v for n, v in given.items() if n in self._graph.leaves}
+            figure = self._graph.evaluate(("figure",), values)["figure"]
+        elements: tuple[Element, ...] = figure.labelled(
+            self.variant.exercise.symbols(self.variant.lang)
+        ).elements
+        return elements
 
     @cached_property
     def _graph(self) -> Graph:

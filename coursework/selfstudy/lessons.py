@@ -10,7 +10,7 @@ import numpy as np
 
 from coursework.course.variant import Variant
 from coursework.figures.plot import AnswerPoint, Axis, Plot
-from coursework.language.numbers import localise, significant, unit_text
+from coursework.language.numbers import significant, unit_text, with_unit
 from coursework.language.words import words
 from coursework.marking.answers import read
 from coursework.markup.markdown import plain_line
@@ -67,7 +67,7 @@ def compare(
         agrees = not is_blank(guess) and _agree(guess, unwrapped(value), name in angles)
         mark = "·" if is_blank(guess) else "✓" if agrees else "✗"
         line = texts["not_predicted"] if is_blank(guess) else texts["predicted"]
-        found = _outcome_text(value, lang, "°" if name in angles else units.get(name, ""))
+        found = _outcome_text(value, lang, "deg" if name in angles else units.get(name, "1"))
         lines.append(f"- {mark} {line.format(name=name, said=_outcome_text(guess, lang), found=found)}")
         outcomes.append(f"- {name}{words(lang)['sheet']['colon']} {found}")
     for name, guess in predicted.items():
@@ -92,13 +92,12 @@ def _agree(guess: Any, value: Any, is_angle: bool) -> bool:
     return any(abs(g - value) <= max(_NEAR * abs(value), _NEAR_ZERO) for g in guesses)
 
 
-def _outcome_text(value: Any, lang: str, unit: str = "") -> str:
+def _outcome_text(value: Any, lang: str, unit: str = "1") -> str:
     texts = words(lang)["study"]
     if isinstance(value, (bool, np.bool_)):
         return texts["yes"] if value else texts["no"]
     if isinstance(value, (int, float, np.number)):
-        space = "" if unit in ("", "°") else "\N{NO-BREAK SPACE}"
-        return f"{localise(significant(float(value)), lang)}{space}{unit}"
+        return with_unit(significant(float(value)), unit, lang)
     return str(value)
 
 

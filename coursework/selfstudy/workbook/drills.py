@@ -165,7 +165,7 @@ def _placed(
     """
     taught = taught_by(exercise.folder, exercise.name, lesson.lang)
     ids = [part.id for part in exercise.spec.parts]
-    check_parts(exercise.name, ids, taught)
+    check_parts(exercise, taught)
     if wrong := [one for one in stated if one not in ids]:
         raise BadCourse(f"{_TABLE}: {exercise.name} has no question {wrong[0]!r}{nearest(wrong[0], ids)}")
     placed: dict[str, set[str]] = {}
@@ -188,8 +188,8 @@ def _possible(variants: Sequence[Variant]) -> Iterator[_Possible]:
     """Yield what drills may ask, of another variant and of another question each time."""
     asked = [_short(variant) for variant in variants]
     for shift in range(max(map(len, asked), default=0)):
-        for variant, parts in zip(variants, asked, strict=True):
-            part = parts[(shift + variants.index(variant)) % len(parts)]
+        for k, (variant, parts) in enumerate(zip(variants, asked, strict=True)):
+            part = parts[(shift + k) % len(parts)]
             for names, steps in _levels(variant, part.quantity):
                 if len(names) > _GIVEN or not (names or part.kind == "choice"):
                     continue

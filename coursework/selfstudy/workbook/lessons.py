@@ -330,7 +330,7 @@ def order_faults(course: Course[Any]) -> tuple[str, ...]:
             for name in folder.names:
                 taught = taught_by(folder, name, lang)
                 if any(lesson.parts for lesson in taught):
-                    check_parts(name, [part.id for part in course[name].spec.parts], taught)
+                    check_parts(course[name], taught)
         except CourseworkError as fault:
             return (*results, str(fault))
     return tuple(results)

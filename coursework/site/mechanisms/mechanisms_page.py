@@ -62,8 +62,8 @@ def address_of(request: Request, exercise: str) -> str:
     who may not."""
     if not request.user.may(Permission.ASSIGNMENTS_PUBLISH):
         return ""
-    home = request.site.course.folder.home("exercises", exercise)
-    return f"/mechanisms/{exercise}" if home is not None and home.suffix == MECHANISM else ""
+    is_mechanism = request.site.course.folder.mechanism("exercises", exercise) is not None
+    return f"/mechanisms/{exercise}" if is_mechanism else ""
 
 
 def mechanism(request: Request) -> Response:
