@@ -4,7 +4,7 @@ when."""
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable
+from collections.abc import Collection
 from contextlib import suppress
 from pathlib import Path
 from typing import NamedTuple
@@ -67,17 +67,15 @@ def _submitted_file(by: tuple[str, ...], time: str, root: str, platform: str, fo
     return SubmittedFile(RowOrigin(by=by, submitted=time), PlatformFile(root, platform, is_tree=True))
 
 
-def latest(files: Iterable[Path]) -> list[Path]:
-    """Return the files in the order of their names; of each student's submissions of an assignment in an
-    exchange folder, those of the last one alone, as nbgrader collects them."""
-    last: dict[tuple[Path, str, str], tuple[str, str]] = {}
-    kept: list[tuple[Path, tuple[Path, str, str] | None, tuple[str, str]]] = []
-    for file in sorted(files):
+def superseded(files: Collection[Path]) -> set[Path]:
+    """Return the files of earlier submissions: of each student's submissions of an assignment in an exchange
+    folder the last one alone counts, as nbgrader collects them."""
+    submissions: dict[tuple[Path, str, str], dict[tuple[str, str], list[Path]]] = {}
+    for file in files:
         key, submission = _exchange_submission(file)
         if key is not None:
-            last[key] = max(submission, last.get(key, submission))
-        kept.append((file, key, submission))
-    return [file for file, key, submission in kept if key is None or last[key] == submission]
+            submissions.setdefault(key, {}).setdefault(submission, []).append(file)
+    return {file for some in submissions.values() for one in sorted(some)[:-1] for file in some[one]}
 
 
 def _exchange_submission(file: Path) -> tuple[tuple[Path, str, str] | None, tuple[str, str]]:
@@ -85,5 +83,6 @@ def _exchange_submission(file: Path) -> tuple[tuple[Path, str, str] | None, tupl
     time and the folder of its submission."""
     for folder in file.parents:
         if match := _EXCHANGE.fullmatch(folder.name):
-            return (folder.parent, match["student"], match["assignment"]), (match["time"], folder.name)
+            exchange = folder.parent.resolve()
+            return (exchange, match["student"], match["assignment"]), (match["time"], folder.name)
     return None, ("", "")

@@ -33,7 +33,7 @@ from coursework.gradebook.rows import (
     sheet_rows,
     short_fault,
 )
-from coursework.gradebook.submission_folders import SIDE_FILES, SubmittedFile, latest, submitted_file
+from coursework.gradebook.submission_folders import SIDE_FILES, SubmittedFile, submitted_file, superseded
 from coursework.issuing.identity import plain
 from coursework.issuing.issued import COLUMNS
 from coursework.language.words import languages
@@ -55,8 +55,8 @@ ENDINGS = (".csv", ".json", ".ipynb", ".parquet", ".xml", ".tsv")
 
 
 def find(paths: Iterable[Path]) -> Iterator[Path | Rejected]:
-    """Yield the files to read; the files of a folder in the order of their names, without earlier submissions
-    in a folder of nbgrader's exchange.
+    """Yield the files to read; the files of a folder in the order of their names; without earlier submissions
+    to nbgrader's exchange.
 
     Raises
     ------
@@ -67,21 +67,21 @@ def find(paths: Iterable[Path]) -> Iterator[Path | Rejected]:
     for path in paths:
         if not path.exists():
             raise BadInput("no such file or folder: {file}{hint}", file=path, hint=_similar_file(path))
-    for path in paths:
-        if path.is_dir():
-            yield from _files_below(path)
-        elif path.suffix.lower() not in ENDINGS:
-            yield _odd_file(path)
-        else:
-            yield path
+    found = [one for path in paths for one in (_files_below(path) if path.is_dir() else (path,))]
+    earlier = superseded([one for one in found if isinstance(one, Path)])
+    for one in found:
+        if isinstance(one, Rejected):
+            yield one
+        elif one.name not in SIDE_FILES and one not in earlier:
+            yield one if one.suffix.lower() in ENDINGS else _odd_file(one)
 
 
 def _files_below(folder: Path) -> Iterator[Path | Rejected]:
     walked_files = walked(folder)
-    files = latest(p for p in walked_files.files if not _is_hidden(p, folder))
+    files = [p for p in walked_files.files if not _is_hidden(p, folder)]
     refused = [p for p in walked_files.refused if not _is_hidden(p, folder)]
     yield from (Rejected(path_text(p), LEADS_OUT) for p in refused)
-    yield from (p if p.suffix.lower() in ENDINGS else _odd_file(p) for p in files if p.name not in SIDE_FILES)
+    yield from files
     if not files and not refused:
         yield Rejected(path_text(folder), Message("the folder contains no file"))
 

@@ -67,9 +67,10 @@ def test_files_that_a_tree_keeps_beside_are_no_rows_and_the_time_is_kept(tmp_pat
     assert book.seen == (f"{tmp_path / 'submitted'} is nbgrader's tree of submissions, 1 file",)
 
 
-def test_of_an_exchange_the_last_submission_alone_counts(tmp_path):
+@pytest.mark.parametrize("named", ["inbound", "inbound/*", "inbound/*/*"])
+def test_of_an_exchange_the_last_submission_alone_counts(tmp_path, named):
     """An earlier one is no rejected row, even if it cannot be read or answers more; of another assignment it
-    stays."""
+    stays. The same if a shell names the folders or the files."""
     for time, content in (
         ("09:00:00", notebook(rA="1", theta4="72")),
         ("11:00:00.5", notebook(rA="111.535")),
@@ -77,7 +78,8 @@ def test_of_an_exchange_the_last_submission_alone_counts(tmp_path):
     ):
         write(tmp_path, f"inbound/adoe+week3+2026-11-22 {time} UTC+a/slotted.ipynb", content)
     write(tmp_path, "inbound/adoe+week2+2026-11-23 09:00:00 UTC/other.ipynb", notebook(seed=5, rA="2"))
-    book = graded(tmp_path / "out", tmp_path / "inbound")
+    write(tmp_path, "inbound/adoe+week2+2026-11-23 09:00:00 UTC/timestamp.txt", "2026-11-23 09:00:00 UTC")
+    book = graded(tmp_path / "out", *sorted(tmp_path.glob(named)))
     marks = {m["part"]: (m["answer"], m["submitted"]) for m in table(tmp_path / "out/marks/marks.csv")}
     assert marks["rA"] == ("111.535", "2026-11-22 11:00:00.5 UTC")
     assert (book.rows_in, book.rejected, book.review_count) == (2, [], 0)
