@@ -31,6 +31,9 @@ _STARS = "4"  #: a space, or nothing, between a number and its unit is a product
 _BRIEFLY = "3"  #: how an answer was read, on a line
 _ALLOWED = "rad"  #: a unit whose name Maxima uses otherwise
 _SIZES = {NUMBER: "15", COLLECTED: "40"}
+#: A block without content. STACK hands a text with a file to Maxima as one string, for which Maxima takes
+#: more than half a minute if it is long; of a text that a block divides, it hands over placeholders.
+_DIVIDER = '[[if test="true"]][[/if]]'
 _NO_ANSWER = "?"  #: right answer of a box that is not judged; never shown
 
 
@@ -118,6 +121,8 @@ class _Question:
             pieces.append(html if box else f"{html}<div>[[input:ans{part_number}]]</div>")
             pieces.append(f"<div>[[validation:ans{part_number}]]</div>")
             pieces.append(f"<div>[[feedback:prt{part_number}]]</div>" if posed.kind != COLLECTED else "")
+        if self._images:
+            pieces.append(_DIVIDER)
         where = self._html(question, "questiontext", "".join(pieces))
         for image in self._images.values():
             data = base64.b64encode(image.data).decode()
