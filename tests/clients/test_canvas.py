@@ -62,7 +62,7 @@ def test_new_quizzes_read_every_exercise_as_it_was_written(packages):
         check=True,
     )
     read = [json.loads(line) for line in run.stdout.splitlines()]
-    assert len(read) == len(folders) == 49
+    assert len(read) == len(folders)
     for folder, found in zip(folders, read, strict=True):
         wanted = ours(folder)
         assert [group["title"] for group in found["groups"]] == list(wanted)
