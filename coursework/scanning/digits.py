@@ -31,12 +31,18 @@ HEIGHT, WIDTH, RIM = 36, 28, 2
 #: The outline, printed or a little beside its place, lies within this many pixels of the net's picture.
 OUTLINE = 3
 
+#: Convolutions of the net in their order: single ones, and pairs of which the output is added to the input.
+LAYERS: tuple[str | tuple[str, str], ...] = ("a", "b", ("c", "d"), "e", ("f", "g"), ("h", "i"), "j")
+_HALVING = frozenset("bej")  #: convolutions of stride 2
+
 #: Cells that go through the net at once: bounds the memory.
-BATCH = 256
+BATCH = 128
 
 
-def read_digits(cells: NDArray[np.uint8]) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
-    """Return the digit in each box, ``EMPTY`` for none, and its confidence.
+def read_digits(
+    cells: NDArray[np.uint8],
+) -> tuple[NDArray[np.int64], NDArray[np.float64], NDArray[np.float64]]:
+    """Return the digit in each box, ``EMPTY`` for none, its confidence, and the probability of each digit.
 
     Parameters
     ----------
@@ -50,15 +56,9 @@ def read_digits(cells: NDArray[np.uint8]) -> tuple[NDArray[np.int64], NDArray[np
         Shape ``(n,)`` each. A confidence is the calibrated probability that the box holds this digit, or
         nothing; it is low where the box holds something else: a letter, a struck-out digit, two digits, a
         part of one.
+    chances
+        The probability of each digit from 0 to 9, shape ``(n, 10)``.
     """
-    return read_candidates(cells)[:2]
-
-
-def read_candidates(
-    cells: NDArray[np.uint8],
-) -> tuple[NDArray[np.int64], NDArray[np.float64], NDArray[np.float64]]:
-    """Return the digit in each box and its confidence, as :func:`read_digits` does, and the probability of
-    each digit from 0 to 9, shape ``(n, 10)``."""
     chances = probabilities(prepared(cells))
     likeliest = chances[:, : BLANK + 1].argmax(axis=1)
     confidences = chances[np.arange(len(likeliest)), likeliest]
@@ -106,16 +106,28 @@ def _weights() -> dict[str, Floats]:
 
 
 def _logits(seen: Floats) -> Floats:
-    """Five convolutions, a maximum over two by two, two full layers."""
+    """Convolutions, single and in residual pairs, and two full layers."""
     w = _weights()
     flow = seen[..., None]
-    for layer, stride in (("a", 1), ("b", 2), ("c", 1), ("d", 2), ("e", 1)):
-        flow = np.maximum(_convolved(flow, w[f"{layer}.weight"], stride) + w[f"{layer}.bias"], 0)
-    n, height, width, channels = flow.shape
-    pooled = flow.reshape(n, height // 2, 2, width // 2, 2, channels).max(axis=(2, 4))
-    hidden = np.maximum(pooled.reshape(n, -1) @ w["f.weight"] + w["f.bias"], 0)
-    logits: Floats = (hidden @ w["g.weight"] + w["g.bias"]) / w["temperature"]
+    for step in LAYERS:
+        if isinstance(step, str):
+            flow = _rectified(flow, step)
+        else:
+            first, second = step
+            flow = np.maximum(flow + _layer(_rectified(flow, first), second), 0)
+    hidden = np.maximum(flow.reshape(len(flow), -1) @ w["hidden.weight"] + w["hidden.bias"], 0)
+    logits: Floats = (hidden @ w["classes.weight"] + w["classes.bias"]) / w["temperature"]
     return logits
+
+
+def _rectified(flow: Floats, name: str) -> Floats:
+    return np.maximum(_layer(flow, name), 0)
+
+
+def _layer(flow: Floats, name: str) -> Floats:
+    w = _weights()
+    out: Floats = _convolved(flow, w[f"{name}.weight"], 2 if name in _HALVING else 1) + w[f"{name}.bias"]
+    return out
 
 
 def _convolved(flow: Floats, weight: Floats, stride: int) -> Floats:

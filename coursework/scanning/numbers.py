@@ -166,7 +166,7 @@ def _digits(pictures: Sequence[np.ndarray], bare: Sequence[bool], reader: Reader
     found = [_ReadNumber()] * len(bare)
     inked = [k for k, empty in enumerate(bare) if not empty]
     if inked:
-        read, sure, *chances = reader(np.stack([_framed(pictures[k]) for k in inked]))
+        read, sure, *chances = reader(np.stack([framed(pictures[k]) for k in inked]))
         for place, k in enumerate(inked):
             digit, confidence = int(read[place]), float(sure[place])
             possible = list(enumerate(chances[0][place].tolist())) if chances else [(digit, confidence)]
@@ -198,7 +198,7 @@ def _leans(picture: np.ndarray) -> bool:
     return bool(is_straight and np.degrees(np.arctan2(-dx, dy)) > _LEAN)
 
 
-def _framed(picture: np.ndarray) -> np.ndarray:
+def framed(picture: np.ndarray) -> np.ndarray:
     """Return a box at the common size, padded with paper."""
     high, wide = _CELL
     cell = np.full(_CELL, 255, np.uint8)

@@ -138,7 +138,7 @@ def _read(
     path: Path, number: int, name: str, papers: Papers, least: float
 ) -> tuple[PageScan, dict[str, bytes]]:
     """Return the result of a page, and its pictures by their files."""
-    from coursework.scanning.digits import read_candidates
+    from coursework.scanning.digits import read_digits
     from coursework.scanning.pages import read_page
     from coursework.scanning.pictures import opencv, picture_at
 
@@ -147,7 +147,7 @@ def _read(
     except CourseworkError as fault:
         return PageScan(REFUSED, as_message(fault), has_picture=False, least=least), {}
     try:
-        page_read = read_page(picture, papers, read_candidates, least)
+        page_read = read_page(picture, papers, read_digits, least)
     except opencv().error as fault:  # one picture does not stop a pile: a person looks at it
         reason: str = Message("reading it failed: {problem}", problem=str(fault.err or fault)[:100])
         return PageScan(LOST, reason, least=least), {picture_of(name): _jpeg(picture.grey, _HIGHEST)}
