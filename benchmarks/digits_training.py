@@ -156,7 +156,7 @@ def of_pages(chunk: int, folder: Path, work: Path) -> tuple[np.ndarray, np.ndarr
         rng = np.random.default_rng([31, index])
         page, file = sheets[rng.integers(len(sheets))]
         hand = scans.simulated.a_hand(rng, bank)
-        hand.answers = scans.Student(page.fields[0].exercise, rng).answer
+        hand.answers = scans.Student(page, rng).answer
         digits = _noted(hand)
         filled, wrote = scans.simulated.filled_in(scans.printed(str(file)), page, hand, odd=0.1)
         grey = scans.simulated.scanned(filled, kinds[index % len(kinds)](rng), rng)

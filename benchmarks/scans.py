@@ -25,8 +25,6 @@ from collections.abc import Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import replace
 from functools import cache
-from itertools import islice, product
-from math import prod
 from pathlib import Path
 from typing import Any
 
@@ -41,7 +39,9 @@ import scanned_pages as simulated  # noqa: E402
 from coursework import open_course  # noqa: E402
 from coursework.marking.marking import is_right_alone  # noqa: E402
 from coursework.scanning.digits import LIKELY, read_digits  # noqa: E402
+from coursework.scanning.gathering import right_readings  # noqa: E402
 from coursework.scanning.pages import read_page  # noqa: E402
+from coursework.scanning.parts import joined_answer  # noqa: E402
 from coursework.scanning.pictures import PageImage  # noqa: E402
 from coursework.sheets.answer_pages import AnswerField, AnswerPage, answer_pages, paper_code  # noqa: E402
 
@@ -127,8 +127,10 @@ class Student:
     """Somebody who writes right and wrong numbers of a variant; an answer of several pieces is right or wrong
     as a whole."""
 
-    def __init__(self, exercise: str, rng: np.random.Generator):
+    def __init__(self, page: AnswerPage, rng: np.random.Generator):
+        exercise = page.fields[0].exercise
         self.rng, self.variant = rng, variant_of(exercise, int(rng.integers(1, VARIANTS + 1)))
+        self.units = {field.part: field.unit_text for field in page.fields if field.unit_text}
         self.parts = {part.id: part for part in self.variant.parts}
         self.knows = {name: rng.random() < RIGHT for name in self.parts}
 
@@ -144,14 +146,11 @@ class Student:
         is_read = len(pieces) == field.coordinates and np.isfinite(pieces).all()
         return float(pieces[field.coordinate]) if is_read else None
 
-    def is_right(self, name: str, texts: Sequence[str], unit: str) -> bool:
-        part, behind = self.parts[name], f" {unit}"
-        bare = [text.removesuffix(behind) for text in texts]
-        if len(texts) > 1:
-            answer = part.sort.from_paper(bare, part, self.variant, unit=bare != list(texts))
-        else:
-            answer = texts[0]
-        return is_right_alone(self.variant, part, answer)
+    def is_right(self, name: str, answer: str) -> bool:
+        return is_right_alone(self.variant, self.parts[name], answer)
+
+    def joined(self, name: str, texts: Sequence[str]) -> str:
+        return joined_answer(self.variant, self.parts[name], texts, self.units.get(name, ""))
 
     def answer(self, field: AnswerField) -> str:
         value = self.value(field)
@@ -201,7 +200,7 @@ def one(folder: Path, index: int, page: AnswerPage, file: str, only: str = "") -
     cv2.setNumThreads(1)
     rng = np.random.default_rng([23, index])
     kind = only or list(simulated.KINDS)[index // 2 % len(simulated.KINDS)]
-    student = Student(page.fields[0].exercise, np.random.default_rng([29, index]))
+    student = Student(page, np.random.default_rng([29, index]))
     hand = simulated.a_hand(rng, bank(folder, index // 30 % 2))
     hand.answers = student.answer
     filled, wrote = simulated.filled_in(printed(file), page, hand, odd=0.1)
@@ -244,14 +243,10 @@ def _doubts(
     was written, and whether what was written is right."""
     if any(said.waits not in ("", "doubted") or meant.waits for said, meant in pieces):
         return
-    unit = pieces[0][0].field.unit_text
-    readings = [said.candidates if said.waits else [(said.text, 1.0)] for said, _ in pieces]
-    chance = sum(
-        prod(chance for _, chance in each)
-        for each in islice(product(*readings), 500)
-        if student.is_right(part, [text for text, _ in each], unit)
-    )
-    is_right = student.is_right(part, [meant.text for _, meant in pieces], unit)
+    right = right_readings(part, [said.candidates or [(said.text, 1.0)] for said, _ in pieces], student)
+    texts = [meant.text for _, meant in pieces]
+    is_right = student.is_right(part, texts[0] if len(texts) == 1 else student.joined(part, texts))
+    chance = sum(chance for _, chance in right)
     for said, meant in pieces:
         if said.waits:
             yield chance, said.text == meant.text, is_right

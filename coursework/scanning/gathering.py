@@ -264,7 +264,7 @@ def _confirmed(
     doubted = [item for item in settled if isinstance(item, AnswerCard)]
     if not doubted or None in settled or not all(card.waits == DOUBTED for card in doubted):
         return settled
-    right = _right_readings(part, [_candidates(item) for item in settled if item is not None], parts)
+    right = right_readings(part, [_candidates(item) for item in settled if item is not None], parts)
     if sum(chance for _, chance in right) < LIKELY:
         return settled
     for card in doubted:
@@ -287,7 +287,7 @@ def _candidates(item: _Settled | AnswerCard) -> Sequence[tuple[str, float]]:
     )
 
 
-def _right_readings(
+def right_readings(
     part: Part, candidates: Sequence[Sequence[tuple[str, float]]], parts: Parts
 ) -> list[tuple[tuple[str, ...], float]]:
     """Return the readings of an answer's pieces that are right, with their probabilities."""

@@ -47,7 +47,10 @@ class Joins:
         applies to all of them."""
         if not any(text.strip() for text in texts):
             return ""
-        variant, question = self.part_of(part)
-        behind = f" {self.unit_of(part)}"
-        bare = [text.removesuffix(behind) if behind.strip() else text for text in texts]
-        return str(question.sort.from_paper(bare, question, variant, unit=bare != list(texts)))
+        return joined_answer(*self.part_of(part), texts, self.unit_of(part))
+
+
+def joined_answer(variant: Any, question: Any, texts: Sequence[str], unit: str) -> str:
+    """Return the texts of several coordinates as one answer, without the ``unit`` behind each."""
+    bare = [text.removesuffix(f" {unit}") if unit.strip() else text for text in texts]
+    return str(question.sort.from_paper(bare, question, variant, unit=bare != list(texts)))
