@@ -465,21 +465,16 @@ def _student_column(name: str, names: set[str]) -> str:
 
 def _check_identity(assignment: Assignment, students: Sequence[Any], notes: list[str]) -> None:
     """Columns that are to be printed should be in the roster; else there are boxes."""
-    from coursework.issuing.identity import is_same_column
-    from coursework.issuing.students import folded
+    from coursework.issuing.identity import column_called
 
     columns = list(dict.fromkeys(title for student in students for title in student.columns))
-    folded_columns = set(map(folded, columns))
-    wanted = [(title, Message("a box to fill in by hand is printed")) for title in assignment.identity]
-    for title in assignment.carry or ():
-        if not any(is_same_column(column, title) for column in columns):
-            wanted.append((title, Message("the summary has no such column")))
-    if assignment.sort and not any(
-        is_same_column(column, "room") for column in columns if is_same_column(assignment.sort, "room")
-    ):
+    printed = () if assignment.anonymous else assignment.identity
+    wanted = [(title, Message("a box to fill in by hand is printed")) for title in printed]
+    wanted += [(title, Message("the summary has no such column")) for title in assignment.carry or ()]
+    if assignment.sort:
         wanted.append((assignment.sort, Message("the papers of a booklet are in the order of the roster")))
     for title, then in wanted:
-        if folded(title) not in folded_columns:
+        if not column_called(columns, title):
             near = nearest(title, columns) if columns else ""
             notes.append(
                 Message(

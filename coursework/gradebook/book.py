@@ -36,7 +36,6 @@ from coursework.gradebook.graded_sheet import Graded
 from coursework.gradebook.rows import Rejected
 from coursework.gradebook.scale import exact, mark_of
 from coursework.issuing.issued import Issued
-from coursework.issuing.students import folded
 from coursework.marking.mark import Mark
 from coursework.messages import localised
 
@@ -325,7 +324,7 @@ def summary_rows(book: Gradebook) -> Iterator[dict[str, Any]]:
         points, out_of = result.points, result.out_of
         yield {
             **{column: roster_cells.get(title, "") for title, column in carried.items()},
-            **{column: roster_cells.get(folded(title), "") for title, column in identity_columns.items()},
+            **{column: roster_cells.get(title, "") for column, title in identity_columns.items()},
             **{column: _number(result.by_exercise.get(e, 0.0)) for e, column in exercises.items()},
             "student": student,
             SITTING: result.sitting,

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from coursework.issuing.exam_columns import is_private
-from coursework.issuing.identity import is_same_column
+from coursework.issuing.identity import column_called, is_same_column
 from coursework.issuing.issued import Issued
 from coursework.issuing.students import folded
 
@@ -67,15 +67,17 @@ def summary_columns(
         return (student, points, out_of, *others, *sitting, *carried_columns(issued).values())
     mark = (MARK,) if issued.assignment.get("mark") else ()
     identity_columns = identity(issued)
-    rest = (c for title, c in carried_columns(issued).items() if title not in map(folded, identity_columns))
+    rest = (c for title, c in carried_columns(issued).items() if title not in identity_columns.values())
     exercises = exercise_columns(issued).values()
-    return (student, *identity_columns.values(), *sitting, *exercises, points, out_of, *mark, *others, *rest)
+    return (student, *identity_columns, *sitting, *exercises, points, out_of, *mark, *others, *rest)
 
 
 def identity(issued: Issued) -> dict[str, str]:
-    """Return the columns that identify a student of the assignment: stated title -> name in the summary."""
-    stated = (issued.assignment or {}).get("identity") or ()
-    return {str(title): _distinct_title(str(title), _reserved_names(issued)) for title in stated}
+    """Return the columns that identify a student of the assignment: name in the summary -> folded title in
+    the roster, "" if it has none."""
+    stated = map(str, (issued.assignment or {}).get("identity") or ())
+    titles = {folded(title) for cells in issued.columns.values() for title in cells}
+    return {_distinct_title(title, _reserved_names(issued)): column_called(titles, title) for title in stated}
 
 
 def exercise_columns(issued: Issued) -> dict[str, str]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 import unicodedata
 from collections.abc import Iterable, Mapping, Sequence
+from functools import lru_cache
 from typing import Any
 
 from coursework.issuing.students import folded
@@ -194,9 +195,11 @@ def is_called(title: str, titles: Iterable[str]) -> bool:
 def printed_columns(
     titles: Iterable[Any], values: Mapping[str, str], lang: str
 ) -> tuple[tuple[str, str], ...]:
-    """Return columns of a roster as a sheet prints them, from a student's line by folded titles; empty where
-    it has none."""
-    return tuple((_printed_title(str(title), lang), values.get(folded(str(title)), "")) for title in titles)
+    """Return columns of a roster as a sheet prints them, from a student's line; empty where it has none."""
+    return tuple(
+        (_printed_title(str(title), lang), values.get(column_called(values, str(title)), ""))
+        for title in titles
+    )
 
 
 def _printed_title(title: str, lang: str) -> str:
@@ -211,10 +214,21 @@ def _printed_title(title: str, lang: str) -> str:
 def is_same_column(title: str, wanted: str) -> bool:
     """Return whether a column is the one that is named: by its title, or by another usual title of what it
     holds."""
+    return plain(title) in _titles_of(wanted)
+
+
+def column_called(titles: Iterable[str], wanted: str) -> str:
+    """Return the column that is named: by its title, else by the first of the usual titles of what it holds;
+    "" if there is none."""
+    by_title = {plain(title): title for title in titles}
+    return next((by_title[title] for title in _titles_of(wanted) if title in by_title), "")
+
+
+@lru_cache(maxsize=256)
+def _titles_of(wanted: str) -> tuple[str, ...]:
+    """Return a title and the other usual ones of what the column holds, as they are compared."""
     known = (NUMBER, EMAIL, GROUP, ROOM, SEAT, EXTRA_TIME)
-    return plain(title) == plain(wanted) or any(
-        {plain(title), plain(wanted)} <= {*titles} for titles in known
-    )
+    return (plain(wanted), *next((titles for titles in known if plain(wanted) in titles), ()))
 
 
 def identifies(title: str) -> bool:

@@ -18,7 +18,7 @@ from coursework.issuing.exam_columns import (
     seat_of,
     with_extra,
 )
-from coursework.issuing.identity import is_same_column, printed_columns
+from coursework.issuing.identity import column_called, is_same_column, printed_columns
 from coursework.issuing.issuing import Issue
 from coursework.issuing.students import folded
 from coursework.language.numbers import localise, plain
@@ -42,16 +42,12 @@ class IssuedPaper:
         return self.issues[0]
 
     @property
-    def _columns(self) -> dict[str, str]:
-        """Return the student's cells of the roster, by the folded title of the column."""
-        return {folded(title): value for title, value in self.first.columns.items()}
-
-    @property
     def sorted_by(self) -> tuple[tuple[tuple[int, int, str], ...], ...]:
         """Return the sort key of the paper in a booklet; papers by room are in the order of the seats."""
         if self.is_by_room:
             return natural(self.room), natural(seat_of(self.first.columns))
-        return (natural(self._columns.get(folded(self.assignment.sort), "")),)
+        columns = self.first.columns
+        return (natural(columns.get(column_called(columns, self.assignment.sort), "")),)
 
     @property
     def is_by_room(self) -> bool:
@@ -90,7 +86,7 @@ class IssuedPaper:
             for name, value in places.items()
             if value and not any(is_same_column(title, name) for title in stated)
         ]
-        return (*unstated, *printed_columns(stated, self._columns, lang))
+        return (*unstated, *printed_columns(stated, self.first.columns, lang))
 
     def usual_duration(self, lang: str) -> str:
         return text_in(self.assignment.duration, lang)

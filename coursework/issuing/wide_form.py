@@ -7,9 +7,9 @@ from typing import Any
 
 from coursework.course.course import Course
 from coursework.course.variant import Variant
+from coursework.issuing.identity import column_called
 from coursework.issuing.issued import NOT_ASKED, items_of_papers
 from coursework.issuing.questions import PaperQuestions, Question
-from coursework.issuing.students import folded
 from coursework.sheets.units import units_text
 
 
@@ -36,8 +36,8 @@ def wide_form(
     asked: list[set[Question]] = []
     for items in papers:
         student = str(items[0].get("student", ""))
-        cells = {folded(t): value for t, value in content.get("students", {}).get(student, {}).items()}
-        rows.append({t: cells.get(folded(t), "") for t in identity})
+        cells = content.get("students", {}).get(student, {})
+        rows.append({title: cells.get(column_called(cells, title), "") for title in identity})
         rows[-1] |= {"student": codes.get(student, student), "version": items[0].get("version", "")}
         asked.append(set())
         for record in (item["record"] for item in items):

@@ -77,6 +77,41 @@ def test_the_form_of_a_line_for_each_student_is_filled_and_marked(built):
     ]
 
 
+def test_number_and_group_are_found_under_the_titles_of_a_registry(small_course, tmp_path, capsys):
+    """``number`` and ``group`` name columns by what they hold: on the paper, in the form and in the summary.
+    No note says that one lacks, nor on an anonymous exam, whose papers print none."""
+    titles = "N° étudiant;Nom;Prénom;groupe de TD"
+    (tmp_path / "class.csv").write_text(f"{titles}\n101;Roy;Ada;TD 10\n102;Roy;Bo;TD 2\n")
+    stated = (
+        'roster = "class.csv"\nidentity = ["number", "group"]\nsort = "group"\nmark = { of = 20 }\n'
+        'lang = "fr"\nformats = "tex"\nsolutions = false\n'
+    )
+    said = {}
+    for name, more in (("named", ""), ("coded", "anonymous = true\n")):
+        file, out = tmp_path / f"{name}.toml", tmp_path / name
+        file.write_text(stated + more + '[[exercises]]\nname = "crank_pin"\n')
+        asked = ["--course", str(small_course), "build", str(file), "--out", str(out)]
+        assert run(asked) == 0
+        said[name] = capsys.readouterr().err
+    assert not [name for name, text in said.items() if "no column" in text]
+    out = tmp_path / "named"
+    form = table(out / "answers_wide.csv")
+    assert [(row["student"], row["number"], row["group"]) for row in form] == [
+        ("Roy Ada", "101", "TD 10"),
+        ("Roy Bo", "102", "TD 2"),
+    ]
+    paper = (out / "handouts" / "roy-ada.fr.tex").read_text("utf-8")
+    assert re.search(r"101.{1,80}TD.10", paper, re.DOTALL)
+    with (out / "typed.csv").open("w", newline="", encoding="utf-8") as file:
+        written = csv.DictWriter(file, list(form[0]))
+        written.writeheader()
+        written.writerow({**form[1], "student": "", list(form[0])[-1]: "1"})  # known by the number alone
+    assert grade(small_course, out, out / "typed.csv") == 0
+    summary = table(out / "marks" / "summary.csv")
+    assert [(row["number"], row["group"]) for row in summary] == [("101", "TD 10"), ("102", "TD 2")]
+    assert not {"N° étudiant", "groupe de TD"} & {*summary[0]}
+
+
 def test_rows_of_one_misspelt_name_are_one_line_with_their_number(built, capsys, monkeypatch):
     course, out = built
     typed, names = out.parent / "typed.csv", ["Adda", "Bo", "Adda", "Zoe", "Adda"]

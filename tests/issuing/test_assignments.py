@@ -258,7 +258,8 @@ def test_a_booklet_is_sorted_by_the_column_that_the_file_names_and_else_as_the_r
         return [one.first.student for one in sorted(made, key=lambda one: one.sorted_by)]
 
     assert order(TEXT) == list(NAMES)
-    sorted_names = order('sort = "group"\n' + TEXT)
+    sorted_names = order('sort = "groupe de TD"\n' + TEXT)
+    assert sorted_names == order('sort = "group"\n' + TEXT)
     assert [dict(zip(NAMES, groups, strict=True))[n] for n in sorted_names] == [
         "",
         "2",
