@@ -27,12 +27,11 @@ from coursework.database.instructor_queries import (
 from coursework.errors import BadInput
 from coursework.gradebook.adjustments import NEUTRAL, SPARED
 from coursework.gradebook.book import Result
-from coursework.gradebook.columns import own_columns
 from coursework.gradebook.graded_sheet import Graded
 from coursework.gradebook.presence import PRESENT
 from coursework.gradebook.scale import mark_of
+from coursework.issuing.identity import column_called
 from coursework.issuing.questions import PaperQuestions
-from coursework.issuing.students import folded
 from coursework.marking.mark import Mark
 from coursework.site.desk.class_cache import class_now, class_within, overview, students_here
 from coursework.site.desk.question_cards import sign_of
@@ -121,9 +120,11 @@ def _by_hand(before: Mark, now: Mark) -> bool:
 def _row(
     now: ClassState, number: int, student: str, result: Result, cells: Mapping[tuple[str, str], Cell]
 ) -> ClassRow:
-    columns = own_columns(now.issued, student)
+    columns = now.issued.columns.get(student, {})
     titles = () if now.codes else (now.issued.assignment or {}).get("identity") or ()
-    identity = " ".join(filter(None, (columns.get(folded(str(title)), "") for title in titles)))
+    identity = " ".join(
+        filter(None, (columns.get(column_called(columns, str(title)), "") for title in titles))
+    )
     submitted = now.site_submissions.get(student)
     tries = (
         submitted.attempts
