@@ -360,8 +360,7 @@ def _tell(
     texts, colon = words(lang)["after"], words(lang)["sheet"]["colon"]
     now = exam.distribution()
     present, names = len(now.marks), exam.issued.students or tuple(now.marks)
-    handed_in = len({graded.student for graded in exam.machine})
-    click.echo(texts["handed_in"].format(len(names), handed_in, len(exam.provisional)))
+    click.echo(texts["handed_in"].format(len(names), present, len(exam.provisional)))
     if any(exam.missing):
         click.echo(texts["missing"].format(*exam.missing))
     click.echo(

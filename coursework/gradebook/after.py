@@ -32,7 +32,7 @@ from coursework.gradebook.class_marking import rules_of
 from coursework.gradebook.decision import new_id
 from coursework.gradebook.decisions import ACCEPTED, GIVEN, WITHDRAWN, Decision, Decisions, check_steps
 from coursework.gradebook.graded_sheet import Graded
-from coursework.gradebook.presence import ABSENT, EXCUSED, PRESENT
+from coursework.gradebook.presence import ABSENT, AWAY, EXCUSED, PRESENT
 from coursework.gradebook.rows import Rejected
 from coursework.gradebook.scale import USUAL_SCALE, mark_on
 from coursework.gradebook.statistics.alike import alike_lines
@@ -207,18 +207,25 @@ class Exam:
     def _standing_results(self) -> dict[str, Result]:
         return self._results(self.adjusted, self.decisions.adjustments)
 
+    @cached_property
+    def present(self) -> frozenset[str]:
+        """Students who handed something in or were present. Of whoever is away, blank lines are nothing."""
+        answered = {graded.student for graded in self.decided if graded.has_answer}
+        blank = {graded.student for graded in self.decided} - answered
+        stated = {student for student, presence in self.presence.items() if presence == PRESENT}
+        away = {student for student, presence in self.presence.items() if presence in AWAY}
+        return frozenset(answered | stated | (blank - away))
+
     def distribution(self, decisions: Decisions | None = None) -> Distribution:
         """Return the marks of those who handed something in or were present, by the scale with these
         decisions."""
         adjustments = (decisions or self.decisions).adjustments
         stated = (adjustments.on(self.issued).assignment or {}).get("mark")
         scale = stated or {**USUAL_SCALE, "step": 0.01}
-        present = {graded.student for graded in self.machine}
-        present |= {student for student, presence in self.presence.items() if presence == PRESENT}
         marks = {
             self.shown(student): float(mark_on(scale, result.counts, result.out_of) or 0)
             for student, result in self.results(decisions).items()
-            if student in present
+            if student in self.present
         }
         return Distribution(scale["of"], marks)
 
@@ -247,8 +254,7 @@ class Exam:
     def missing(self) -> tuple[int, int]:
         """Number of students who are absent, and excused, where somebody stated it, and who handed nothing
         in."""
-        handed_in = {graded.student for graded in self.machine}
-        counts = Counter(its for student, its in self.presence.items() if student not in handed_in)
+        counts = Counter(its for student, its in self.presence.items() if student not in self.present)
         return counts[ABSENT], counts[EXCUSED]
 
     # --------------------------------------------------------------------- left

@@ -33,6 +33,7 @@ from coursework.gradebook.columns import REJECTED_COLUMNS as REJECTED_COLUMNS
 from coursework.gradebook.columns import SUMMARY_COLUMNS as SUMMARY_COLUMNS
 from coursework.gradebook.columns import VERDICTS as VERDICTS
 from coursework.gradebook.graded_sheet import Graded
+from coursework.gradebook.presence import AWAY
 from coursework.gradebook.rows import Rejected
 from coursework.gradebook.scale import exact, mark_of
 from coursework.issuing.issued import Issued
@@ -223,6 +224,11 @@ class Result:
         """Points on which the mark is based."""
         return self.points - self.late
 
+    @property
+    def is_blank(self) -> bool:
+        """True if nothing was answered."""
+        return self.verdicts["missing"] == sum(self.verdicts[verdict] for verdict in VERDICTS)
+
 
 def results(book: Gradebook) -> Iterator[tuple[str, Result]]:
     """Yield each student of the roster, and each other student who answered, with the sitting that counts.
@@ -322,6 +328,8 @@ def summary_rows(book: Gradebook) -> Iterator[dict[str, Any]]:
     for student, result in results(book):
         roster_cells = own_columns(issued, student)
         points, out_of = result.points, result.out_of
+        presence = book.presence.get(student, "")
+        is_marked = presence not in AWAY or not result.is_blank
         yield {
             **{column: roster_cells.get(title, "") for title, column in carried.items()},
             **{column: roster_cells.get(title, "") for column, title in identity_columns.items()},
@@ -332,8 +340,8 @@ def summary_rows(book: Gradebook) -> Iterator[dict[str, Any]]:
             "out_of": f"{out_of:g}",
             LATE: f"{result.late:g}",
             PROVISIONAL: result.open or "",
-            PRESENCE: book.presence.get(student, ""),
-            MARK: mark_of(issued, result.counts, out_of),
-            "percent": f"{100 * result.counts / out_of:.1f}" if out_of else "",
+            PRESENCE: presence,
+            MARK: mark_of(issued, result.counts, out_of) if is_marked else "",
+            "percent": f"{100 * result.counts / out_of:.1f}" if out_of and is_marked else "",
             **{verdict: result.verdicts[verdict] for verdict in VERDICTS},
         }

@@ -28,6 +28,10 @@ class Graded(NamedTuple):
         return sum(line.points for line in self.lines.values())
 
     @property
+    def has_answer(self) -> bool:
+        return any(line.verdict != "missing" for line in self.lines.values())
+
+    @property
     def open(self) -> int:
         """Number of answers that wait for a person."""
         return sum(line.verdict in WAITING and part not in self.settled for part, line in self.lines.items())

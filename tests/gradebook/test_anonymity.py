@@ -146,14 +146,17 @@ def test_a_database_writes_codes_until_nothing_waits(exam, tmp_path):
     assert (row["student"], row["points"], row["verdict"]) == ("Ada Lovelace", "1", "accepted")
 
 
-def test_who_is_absent_has_no_zero(exam, small_course):
-    """Presence by name in the attendance list goes by code, and decides what a blank paper is worth."""
+@pytest.mark.parametrize("typed_for", [(), NAMES[1:3]], ids=["no lines", "blank lines"])
+def test_who_is_absent_has_no_zero(exam, small_course, capsys, typed_for):
+    """Presence by name in the attendance list goes by code, and decides what a blank paper is worth, as it
+    does of blank lines in the form of the class."""
     command, out = exam
     issued, marks = out / "issued.json", out / "marks"
     codes = json.loads(issued.read_text())["codes"]
     key = {(k["student"], k["part"]): k["value"] for k in table(out / "instructor" / "key.csv")}
     ada = codes[NAMES[0]]
-    answers = typed(out, {ada: [key[ada, part] for part in "xyv"]})
+    right = {ada: [key[ada, part] for part in "xyv"]}
+    answers = typed(out, right | {codes[name]: ["", "", ""] for name in typed_for})
     (out / "attendance.csv").write_text(
         "student,present\nAda Lovelace,x\nBo Diddley,présente\nCy Young,absence\n"
     )
@@ -162,12 +165,18 @@ def test_who_is_absent_has_no_zero(exam, small_course):
         "student,present\nAda Lovelace,x\nBo Diddley,présente\nCy Young,ABJ\n"
     )
     assert command("grade", answers, "--issued", issued, "--no-feedback", "--names") == 0
-    assert {row["student"]: row["presence"] for row in table(marks / "summary.csv")} == {
-        "Ada Lovelace": "present",
-        "Bo Diddley": "present",
-        "Cy Young": "excused",
-    }
+    summary = [(row["student"], row["presence"], row["percent"]) for row in table(marks / "summary.csv")]
+    assert summary == [
+        ("Ada Lovelace", "present", "100.0"),
+        ("Bo Diddley", "present", "0.0"),
+        ("Cy Young", "excused", ""),
+    ]
     scored = {one.name: one for one in class_points(marks, "points")}
     assert [scored[name].is_marked for name in NAMES[:3]] == [True, True, False]
     found = MarkedFolder(open_course(small_course), issued, marks).exam
     assert (found.missing, sorted(found.distribution().marks)) == ((0, 1), ["Ada Lovelace", "Bo Diddley"])
+    capsys.readouterr()
+    assert command("report", marks, "--json") == 0
+    said = json.loads(capsys.readouterr().out)
+    assert (said["students"], said["percent"]["mean"]) == (2, 50)
+    assert said["handed_in_nothing"] == (0 if typed_for else 1)

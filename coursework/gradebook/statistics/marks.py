@@ -136,18 +136,27 @@ class _Columns:
 
     def marks(self, entries: Mapping[str, StudentSummary], rejected: int) -> Marks:
         """Return the marks, with the summaries."""
-        students, marked = self.students, len(self.students)
+        student, part, verdict = (
+            np.array(c, dtype=np.int64) for c in (self.student, self.part, self.verdict)
+        )
+        blank = np.array([family_of(v) == "missing" for v in self.verdicts], dtype=bool)
+        # The form of the class has a line for whoever is away, too.
+        stated = [name in entries and entries[name].is_away for name in self.students]
+        away = np.array(stated, dtype=bool)
+        away[student[~blank[verdict]]] = False
+        students, kept = _Numbered(), ~away[student]
+        for name, is_away in zip(self.students, away.tolist(), strict=True):
+            if not is_away:
+                students[name]
+        marked = len(students)
+        student, part, verdict = (np.cumsum(~away) - 1)[student[kept]], part[kept], verdict[kept]
+        points, out_of = (np.array(c, dtype=float)[kept] for c in (self.points, self.out_of))
         entries = {name: entry for name, entry in entries.items() if not entry.is_away or name in students}
         unread = [name for name, entry in entries.items() if entry.unreadable]
         for name in entries:
             students[name]
-        student, part, verdict = (
-            np.array(c, dtype=np.int64) for c in (self.student, self.part, self.verdict)
-        )
-        out_of = np.array(self.out_of, dtype=float)
         issued = np.bincount(student, out_of, minlength=len(students))
         issued = np.maximum(issued, [entries[s].out_of if s in entries else 0.0 for s in students])
-        blank = np.array([family_of(v) == "missing" for v in self.verdicts], dtype=bool)
         asked_blank = sum(entry.missing for entry in entries.values())
         without_line = max(0, asked_blank - int(np.count_nonzero(blank[verdict])))
         return Marks(
@@ -157,7 +166,7 @@ class _Columns:
             student,
             part,
             verdict,
-            np.array(self.points, dtype=float),
+            points,
             out_of,
             issued,
             without_line if entries else 0,
@@ -175,7 +184,7 @@ def unlike_summary(folder: Path, marks: Marks) -> list[str]:
     sums = np.bincount(marks.student, marks.points, minlength=len(marks.students))
     results = dict(zip(marks.students, sums.tolist(), strict=True))
     text = list(_lines(path, ("student", "points", "out_of"), _Decimals()))
-    unlike = {name for name, points, _ in text if abs(results[name] - points) > 1e-5 * max(1.0, points)}
+    unlike = {n for n, points, _ in text if abs(results.get(n, 0.0) - points) > 1e-5 * max(1.0, points)}
     if unlike:  # points of a bonus are not points of a question
         results = dict.fromkeys(unlike, 0.0)
         for name, _, _, _, points, _ in _counting(folder, _Decimals()):

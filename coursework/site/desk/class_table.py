@@ -143,7 +143,7 @@ def _row(
         mark_of(now.adjusted, result.counts, result.out_of),
         tries,
         submitted.late if submitted else 0,
-        bool(cells) or submitted is not None,
+        (bool(cells) and student in now.exam.present) or submitted is not None,
         result.open,
         result.counts,
         submitted is not None,
@@ -264,7 +264,7 @@ def table_here(request: Request, assignment_id: int) -> ClassTable:
 
 def _table(now: ClassState) -> ClassTable:
     with paused_collection():
-        handed_in = len({graded.student for graded in now.machine.values()})
+        handed_in = len(now.exam.present & {graded.student for graded in now.machine.values()})
         counts = ClassCounts(len(now.issued.students) or len(now.results), handed_in, now.waiting)
         return ClassTable(now.about, now.stamp, counts, _content(now))
 
