@@ -24,6 +24,8 @@ _ONE_BELOW_TWO = ("fr",)  #: languages whose nouns are singular below two
 _NARROW = "\N{NARROW NO-BREAK SPACE}"
 #: Place of a number with a format; one in double quotes is for a file, whose numbers have a point.
 _NUMBER = re.compile(r'(?<!")\{(\w+):([^{}|]+)\}')
+_QUOTED = re.compile(r"\{(\w+)!r\}")
+_QUOTES = {"fr": f"«{_NARROW}{{}}{_NARROW}»"}  #: round a text that the template quotes
 _SIGNS = {"fr": str.maketrans({",": _NARROW, ".": ","})}  #: between thousands, and before decimals
 _language: ContextVar[str] = ContextVar("language of messages", default="en")
 
@@ -140,7 +142,21 @@ def _filled(template: str, values: Mapping[str, Any], lang: str) -> str:
     if lang in _SIGNS:
         text = _NUMBER.sub(lambda place: _number(place, values, lang), text)
     translated = {n: localised(v, lang) if _is_translated(v) else v for n, v in values.items()}
+    if lang in _QUOTES:
+        text = _QUOTED.sub(lambda place: _quoted(place, translated, lang), text)
     return text.format(**translated)
+
+
+def _quoted(place: re.Match[str], values: Mapping[str, Any], lang: str) -> str:
+    """Return the place of a quoted text within the quotes of a language; the place itself for another
+    value."""
+    value = values[place[1]]
+    return _QUOTES[lang].format(_braced(repr(value)[1:-1])) if isinstance(value, str) else place[0]
+
+
+def _braced(text: str) -> str:
+    """Return a text as it stands in a template."""
+    return text.replace("{", "{{").replace("}", "}}")
 
 
 def _number(place: re.Match[str], values: Mapping[str, Any], lang: str) -> str:

@@ -224,6 +224,22 @@ def test_numbers_of_a_message_have_the_signs_of_its_language():
     assert str(table[0][0]) == "12 of 1.25 mm"
 
 
+def test_a_quoted_text_has_the_quotes_of_the_language():
+    """Numbers and lists are not quoted, and what cannot be printed is escaped, as in English."""
+    table = [
+        (Message("found {found!r}", found="hier"), "found «\u202fhier\u202f»", "found 'hier'"),
+        (Message("found {found!r}", found="{0}\n"), "found «\u202f{0}\\n\u202f»", "found '{0}\\n'"),
+        (Message("found {found!r}", found=["x", 2]), "found ['x', 2]", "found ['x', 2]"),
+        (
+            Message("found {found!r}", found=Message("{number} file{number:|s}", number=2)),
+            "found «\u202f2 fichiers\u202f»",
+            "found '2 files'",
+        ),
+    ]
+    assert [message.in_language("fr") for message, _, _ in table] == [text for _, text, _ in table]
+    assert [str(message) for message, _, _ in table] == [text for _, _, text in table]
+
+
 def test_values_that_are_messages_are_translated_with_the_whole():
     error = BadInput("{cells} where the header has {most}", cells=counted(3, "cell"), most=5)
     assert str(error) == "3 cells where the header has 5"

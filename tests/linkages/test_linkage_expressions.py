@@ -100,7 +100,7 @@ def test_right_expressions_have_values_in_their_units(text, unit, value):
             "a product has its sign: '2 * r2'; found '2 r2'",
             "un produit s’écrit avec son signe : '2 * r2'",
         ),
-        ("5*mm", "mm", "'mm' is a unit, which stands beside a number: \"5 mm\"", "'mm' est une unité"),
+        ("5*mm", "mm", "'mm' is a unit, which stands beside a number: \"5 mm\"", "« mm » est une unité"),
         (
             "100 mmm",
             "mm",
