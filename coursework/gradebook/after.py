@@ -305,7 +305,7 @@ class Exam:
                 name=name[:40],
                 first=next(iter(self.questions.values()), ""),
                 last=next(reversed(self.questions.values()), ""),
-                kinds=", ".join(self.kinds) or "–",
+                kinds=", ".join(kind_names.get(kind, kind).lower() for kind in self.kinds) or "–",
             )
         return found
 

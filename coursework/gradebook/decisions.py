@@ -130,7 +130,7 @@ class Decisions:
             )
         if any(one.id == name for one in (*self.own, *self.steps)):
             raise BadInput("decision {name} is taken back already", name=name)
-        shown = [step.id for step in self.standing_steps]
+        shown = list(dict.fromkeys(one.id for one in standing if one.id))
         raise BadInput(
             "no decision {name!r}; those that stand are {found}",
             name=name[:40],

@@ -297,4 +297,4 @@ def test_questions_are_called_by_number_exercise_or_kind(marked, capsys):
         assert {row["out_of"] for row in table(folder / "summary.csv")} == {"4"}
     capsys.readouterr()
     assert after("--weight", "angel=9") == 2
-    assert "the papers have 1.1 to 1.3, and the kinds number" in capsys.readouterr().err
+    assert "the papers have 1.1 to 1.3, and the kinds numbers" in capsys.readouterr().err
