@@ -101,6 +101,11 @@ class BadInput(CourseworkError, ValueError):
     """Wrong input of a user, in a file or in the arguments of a call."""
 
 
+def reason_of(fault: OSError) -> Message:
+    """Return what the system says of a file or an address, as a message."""
+    return Message(fault.strerror or str(fault))
+
+
 def counted(number: int, noun: str) -> Message:
     """Return ``1 row``, ``2 rows``."""
     return Message("{number} " + noun + "{number:|s}", number=number)

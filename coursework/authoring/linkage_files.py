@@ -13,7 +13,7 @@ import numpy as np
 
 from coursework.authoring.scaffold import check_name, course_files
 from coursework.course.exercise import CourseExercise
-from coursework.errors import BadInput, nearest, unknown
+from coursework.errors import BadInput, nearest, reason_of, unknown
 from coursework.linkages.compiled import CompiledLinkage, compiled
 from coursework.linkages.groups import Dyad, Wheel
 from coursework.linkages.points import value_of
@@ -252,9 +252,7 @@ def from_pylinkage(path: Path) -> str:
         joints = data["joints"]
         listed = {str(j["name"]): j for j in joints}
     except OSError as fault:
-        raise BadInput(
-            "{file} cannot be read: {problem}", file=path, problem=fault.strerror or fault
-        ) from fault
+        raise BadInput("{file} cannot be read: {problem}", file=path, problem=reason_of(fault)) from fault
     except (ValueError, KeyError, TypeError, AttributeError) as fault:
         raise BadInput(
             "{file} is not a linkage of pylinkage: it has no joints, or is not JSON", file=path

@@ -11,7 +11,7 @@ import click
 from coursework.cli.commands import commands, named_command
 from coursework.cli.options import BAD, DONE, complain
 from coursework.cli.printing import problem_of
-from coursework.errors import CourseworkError
+from coursework.errors import CourseworkError, reason_of
 from coursework.language.environment import language_of
 from coursework.messages import Message, localised, messages_in, translations
 from coursework.system.ending import Ended, end_cleanly, has_ended, leave
@@ -64,4 +64,4 @@ def _run(arguments: Sequence[str]) -> int:
         return DONE
     except OSError as fault:
         file = fault.filename or Message("a file")
-        return complain(localised(Message("{file}: {problem}", file=file, problem=fault.strerror or fault)))
+        return complain(localised(Message("{file}: {problem}", file=file, problem=reason_of(fault))))

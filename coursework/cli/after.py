@@ -20,6 +20,8 @@ from coursework.cli.options import (
     FILE,
     FOLDER,
     FOUND,
+    DecimalNumber,
+    WholeNumber,
     assignment_option,
     db_option,
     json_option,
@@ -27,6 +29,7 @@ from coursework.cli.options import (
     writes,
 )
 from coursework.cli.printing import print_json, print_table, progress_bar, say, warn
+from coursework.course.marking_rules import DIGITS_KEPT
 from coursework.errors import BadInput, counted, first_few
 from coursework.language.words import words
 from coursework.messages import Message, language_of_messages, localised
@@ -80,15 +83,19 @@ def _several(name: str, metavar: str, **more: Any) -> Callable[[Any], Any]:
     "questions.",
 )
 @_several("--tolerance", "QUESTIONS=FACTOR", help="Widen the accepted margin of questions: 2 doubles it.")
-@click.option("--digits", type=int, help="Make all margins as wide as so many digits kept on the way cost.")
+@click.option(
+    "--digits",
+    type=WholeNumber(*DIGITS_KEPT),
+    help="Make all margins as wide as so many digits kept on the way cost.",
+)
 @_several(
     "--price",
     "[QUESTIONS/]VERDICT=SHARE",
     help="Change the share of the points that a verdict leaves: slip:sign=0.75.",
 )
-@click.option("--full", type=float, metavar="POINTS", help="Points that are worth the best mark.")
+@click.option("--full", type=DecimalNumber(), metavar="POINTS", help="Points that are worth the best mark.")
 @click.option("--curve", metavar="POINTS:MARK…", help='Scale by points: "0:0 16:10 32:20".')
-@click.option("--step", "rounding", type=float, help="Step to which marks are rounded.")
+@click.option("--step", "rounding", type=DecimalNumber(), help="Step to which marks are rounded.")
 @click.option(
     "--restated",
     is_flag=True,

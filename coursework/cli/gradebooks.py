@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from coursework.cli.options import DONE, FILE, FOUND, PATH
+from coursework.cli.options import DONE, FILE, FOUND, PATH, DecimalNumber
 from coursework.cli.printing import say, warn
 from coursework.errors import BadInput, counted
 from coursework.messages import Message
@@ -45,7 +45,7 @@ _SIGNS = {"point": ".", "comma": ",", None: ""}
 )
 @click.option(
     "--out-of",
-    type=click.FloatRange(min=0, min_open=True),
+    type=DecimalNumber(),
     help="Maximum of the item, if the export does not state it.",
 )
 @click.option(

@@ -26,6 +26,11 @@ def translated(text: str) -> str:
     return "\n\n".join(known.get(one, one) for one in paragraphs(text)) if known else text
 
 
+def placeholders_translated(text: str) -> str:
+    """Return a text with its placeholders, such as FILE, in the language of messages."""
+    return _by_words(text, _PLACEHOLDER, translations(language_of_messages()))
+
+
 def _by_words(text: str, words: re.Pattern[str], known: Mapping[str, str]) -> str:
     return words.sub(lambda match: known.get(match[0], match[0]), text)
 
@@ -35,7 +40,7 @@ class _Formatter(click.HelpFormatter):
 
     def write_usage(self, prog: str, args: str = "", prefix: str | None = None) -> None:
         known = translations(language_of_messages())
-        super().write_usage(prog, _by_words(args, _PLACEHOLDER, known), known.get("Usage: ", prefix))
+        super().write_usage(prog, placeholders_translated(args), known.get("Usage: ", prefix))
 
     def write_heading(self, heading: str) -> None:
         known = translations(language_of_messages())
@@ -51,9 +56,7 @@ class _Formatter(click.HelpFormatter):
         for first, second in rows:
             match = _EXTRA.fullmatch(second)
             text, extra = (match["text"], match["extra"] or "") if match else (second, "")
-            shown.append(
-                (_by_words(first, _PLACEHOLDER, known), translated(text) + _by_words(extra, _WORD, known))
-            )
+            shown.append((placeholders_translated(first), translated(text) + _by_words(extra, _WORD, known)))
         super().write_dl(shown, col_max, col_spacing)
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import os
 from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
@@ -12,6 +13,7 @@ import click
 from coursework.cli import completion
 from coursework.cli.printing import warn
 from coursework.errors import BadInput, WrongValue
+from coursework.language.numbers import typed_number
 from coursework.messages import Message, localised
 from coursework.system.extras import libraries
 from coursework.system.limits import MOST_SEED
@@ -122,6 +124,32 @@ class WholeNumber(click.ParamType):
         return number
 
 
+class DecimalNumber(click.ParamType):
+    """A number with a decimal point or comma: above 0, or from the least to the most."""
+
+    name = "number"
+
+    def __init__(self, least: float = 0, most: float = math.inf):
+        self.least, self.most = least, most
+
+    def convert(self, value: Any, param: Any, ctx: Any) -> float:
+        number, found = typed_number(str(value)), str(value)[:40]
+        is_bounded = self.most < math.inf
+        if not (self.least <= number <= self.most if is_bounded else self.least < number < math.inf):
+            message = (
+                Message(
+                    "takes a number from {least:g} to {most:g}; found {found!r}",
+                    least=self.least,
+                    most=self.most,
+                    found=found,
+                )
+                if is_bounded
+                else Message("takes a number above {least:g}; found {found!r}", least=self.least, found=found)
+            )
+            self.fail(localised(message), param, ctx)
+        return number
+
+
 class FilePath(click.Path):
     """The path of a file or folder: a text that names one."""
 
@@ -131,6 +159,13 @@ class FilePath(click.Path):
             self.fail(localised(Message("names no file or folder; the current folder is ./")), param, ctx)
         if "\0" in text:
             self.fail(localised(Message("the name of a file contains no NUL")), param, ctx)
+        if self.exists and not os.path.exists(text):
+            missing = "there is no file {path!r}" if self.file_okay else "there is no folder {path!r}"
+            self.fail(localised(Message(missing, path=text)), param, ctx)
+        if not self.dir_okay and os.path.isdir(text):
+            self.fail(localised(Message("{path!r} is a folder", path=text)), param, ctx)
+        if not self.file_okay and os.path.isfile(text):
+            self.fail(localised(Message("{path!r} is a file", path=text)), param, ctx)
         return super().convert(value, param, ctx)
 
 

@@ -31,7 +31,7 @@ from coursework.cli.options import (
     writes,
 )
 from coursework.cli.printing import progress_bar, say
-from coursework.errors import BadInput, counted
+from coursework.errors import BadInput, counted, reason_of
 from coursework.system.limits import MOST_VARIANTS
 
 if TYPE_CHECKING:
@@ -211,7 +211,7 @@ def _export_autograder(
             data = issued.read_bytes()
         except OSError as fault:
             raise BadInput(
-                "{issued} cannot be read: {strerror}", issued=issued, strerror=fault.strerror
+                "{issued} cannot be read: {strerror}", issued=issued, strerror=reason_of(fault)
             ) from fault
         files = list(PLATFORM.autograder(course.folder, data, str(issued)))
     else:

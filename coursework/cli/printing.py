@@ -12,6 +12,7 @@ from typing import Any
 
 import click
 
+from coursework.cli.help_pages import placeholders_translated
 from coursework.messages import Message, localised
 from coursework.system.visible import one_line, plain, visible, visible_streams
 
@@ -52,13 +53,19 @@ def problem_of(fault: click.UsageError) -> str:
             return Message("no option {option!r}{nearest}", option=fault.option_name, nearest=nearest)
         case click.BadOptionUsage():
             return Message("the option {option!r} needs a value", option=fault.option_name)
-        case click.MissingParameter():
-            name = fault.param.get_error_hint(fault.ctx) if fault.param and fault.ctx else fault.param_hint
-            return Message("{parameter} is missing", parameter=name)
+        case click.MissingParameter() if fault.param and fault.ctx:
+            return Message("{parameter!r} is missing", parameter=_name_of(fault.param, fault.ctx))
         case click.BadParameter() if fault.param and fault.ctx:
-            name = fault.param.get_error_hint(fault.ctx)
-            return Message("invalid value for {parameter}: {problem}", parameter=name, problem=fault.message)
+            name, problem = _name_of(fault.param, fault.ctx), fault.message
+            if isinstance(fault.param.type, click.Choice):
+                problem = Message("it is one of {choices}", choices=", ".join(fault.param.type.choices))
+            return Message("invalid value for {parameter!r}: {problem}", parameter=name, problem=problem)
     return fault.format_message().rstrip(".")
+
+
+def _name_of(parameter: click.Parameter, context: click.Context) -> str:
+    """Return an option or an argument as the help page shows it."""
+    return placeholders_translated(parameter.get_error_hint(context).strip("'"))
 
 
 def warn_some(lines: Sequence[str], where: object) -> None:

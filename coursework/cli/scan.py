@@ -14,6 +14,7 @@ from coursework.cli.options import (
     FOLDER,
     FOUND,
     PATH,
+    DecimalNumber,
     NeedingExtra,
     decimal_option,
     opened,
@@ -51,7 +52,7 @@ def _ready() -> None:
 )
 @click.option(
     "--sure",
-    type=click.FloatRange(0.9, 1.0),
+    type=DecimalNumber(0.9, 1.0),
     default=0.995,
     show_default=True,
     help=(

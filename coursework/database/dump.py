@@ -19,7 +19,7 @@ from coursework.database.assignments import issued_of
 from coursework.database.store import Store, json_of
 from coursework.database.submissions import rows_of
 from coursework.database.tables import METADATA, UTCDateTime, assignment
-from coursework.errors import BadInput
+from coursework.errors import BadInput, reason_of
 from coursework.system.folder_lock import is_bare
 from coursework.system.json_files import read_json
 from coursework.system.links import check_inside
@@ -83,7 +83,7 @@ def _write(connection: Connection, table: Table, path: Path) -> int:
             file.close()
             part.replace(path)
     except OSError as fault:
-        raise BadInput("{file} cannot be written: {problem}", file=path, problem=fault.strerror) from fault
+        raise BadInput("{file} cannot be written: {problem}", file=path, problem=reason_of(fault)) from fault
     return count
 
 

@@ -9,7 +9,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from coursework.errors import BadInput
+from coursework.errors import BadInput, reason_of
 from coursework.gradebook.columns import VERDICTS
 from coursework.issuing.students import folded
 from coursework.language.numbers import typed_number
@@ -226,6 +226,6 @@ def lines_of(
                 further = sum(len(cell.splitlines()) - 1 for cell in row.values() if cell)
                 yield reader.line_num - further, row, more
     except OSError as fault:
-        raise BadInput("{file} cannot be read: {problem}", file=path, problem=fault.strerror) from fault
+        raise BadInput("{file} cannot be read: {problem}", file=path, problem=reason_of(fault)) from fault
     except csv.Error as fault:
         raise BadInput("{file} is not CSV: {problem}", file=path, problem=fault) from fault

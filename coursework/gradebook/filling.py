@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import NamedTuple
 
-from coursework.errors import BadInput, nearest
+from coursework.errors import BadInput, nearest, reason_of
 from coursework.gradebook.class_points import Scored
 from coursework.gradebook.platform_gradebooks import People, PlatformGradebook, people_in
 from coursework.gradebook.presence import EXCUSED
@@ -142,7 +142,7 @@ def _bytes_of(path: Path) -> bytes:
     try:
         return path.read_bytes()
     except OSError as fault:
-        raise BadInput("{file} cannot be read: {problem}", file=path, problem=fault.strerror) from fault
+        raise BadInput("{file} cannot be read: {problem}", file=path, problem=reason_of(fault)) from fault
 
 
 def _first(row: Sequence[PositionedCell]) -> str:

@@ -16,7 +16,7 @@ from operator import itemgetter
 from pathlib import Path
 from typing import Any, BinaryIO
 
-from coursework.errors import BadInput, closest
+from coursework.errors import BadInput, closest, reason_of
 from coursework.gradebook.notebooks import read_notebook
 from coursework.gradebook.platform_files import NO_ANSWERS, fault_of, read_records, read_table, reader_of
 from coursework.gradebook.qti_results import read_results
@@ -147,7 +147,7 @@ def _read(
         refused = (
             LEADS_OUT
             if isinstance(fault, LeadsOut)
-            else Message("cannot be read: {problem}", problem=fault.strerror)
+            else Message("cannot be read: {problem}", problem=reason_of(fault))
         )
         yield Rejected(path_text(path), refused)
         return
@@ -170,7 +170,7 @@ def _read_whole(
             return
         data = file.read()
     except OSError as fault:
-        yield Rejected(path_text(path), Message("cannot be read: {problem}", problem=fault.strerror))
+        yield Rejected(path_text(path), Message("cannot be read: {problem}", problem=reason_of(fault)))
         return
     rows = (
         reader(data, path_text(path)) if handed is None else read_notebook(data, path_text(path), handed.name)

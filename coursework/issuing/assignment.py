@@ -16,7 +16,7 @@ from typing import Any, Protocol
 from coursework.course.exercise import ALL, USUAL, CourseExercise
 from coursework.course.marking_rules import Rules
 from coursework.course.secrecy import Secret
-from coursework.errors import BadCourse, BadInput, CourseworkError, nearest
+from coursework.errors import BadCourse, BadInput, CourseworkError, nearest, reason_of
 from coursework.language.words import languages
 from coursework.messages import Message
 from coursework.sheets.paper import Logo
@@ -150,7 +150,7 @@ class Assignment:
             data = self.logo.read_bytes()
         except OSError as fault:
             raise BadInput(
-                "the logo {file} cannot be read: {reason}", file=self.logo, reason=fault.strerror
+                "the logo {file} cannot be read: {reason}", file=self.logo, reason=reason_of(fault)
             ) from fault
         return Logo(data, self.logo.suffix[1:].lower(), text_in(self.logo_alt, lang))
 

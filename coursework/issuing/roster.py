@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
-from coursework.errors import BadInput, counted
+from coursework.errors import BadInput, counted, reason_of
 from coursework.issuing.exam_columns import extra_time_of
 from coursework.issuing.identity import EMAIL, FIRST_NAME, NUMBER, SURNAME, WHOLE, distinguishing_id, plain
 from coursework.issuing.platform_rosters import RosterLine, first_name_first, without_marks
@@ -279,7 +279,7 @@ def _rows(path: Path, warn: Callable[[str], None]) -> list[tuple[int, list[str]]
         data = path.read_bytes()
     except OSError as fault:
         raise BadInput(
-            "the roster {file} cannot be read: {reason}", file=path, reason=fault.strerror
+            "the roster {file} cannot be read: {reason}", file=path, reason=reason_of(fault)
         ) from fault
     text, warning = decode(data)
     if "\0" in text:

@@ -19,7 +19,7 @@ from tempfile import TemporaryDirectory
 from typing import Any
 
 from coursework.course.course import Course
-from coursework.errors import BadInput
+from coursework.errors import BadInput, reason_of
 from coursework.issuing.answer_papers import AnswerPaper
 from coursework.issuing.issued import COLUMNS, Issued
 from coursework.messages import Message, localised
@@ -185,7 +185,7 @@ def _read_issued(path: Path) -> Mapping[str, Any]:
     try:
         content = json.loads(path.read_bytes())
     except OSError as fault:
-        raise BadInput("{path} cannot be read: {strerror}", path=path, strerror=fault.strerror) from fault
+        raise BadInput("{path} cannot be read: {strerror}", path=path, strerror=reason_of(fault)) from fault
     except (ValueError, RecursionError) as fault:
         raise BadInput("{path} is not JSON: {fault}", path=path, fault=str(fault)[:100]) from fault
     if not isinstance(content, dict):

@@ -9,7 +9,7 @@ from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import NamedTuple
 
-from coursework.errors import BadInput
+from coursework.errors import BadInput, reason_of
 from coursework.messages import Message, as_message
 from coursework.system.links import LEADS_OUT, LeadsOut, open_inside, walked
 from coursework.system.unzipping import ArchiveLimits, is_zip, unpack
@@ -81,7 +81,7 @@ def _file(path: Path, name: str, unpacked: Path, folder: Path | None = None) -> 
         why = (
             LEADS_OUT
             if isinstance(fault, LeadsOut)
-            else Message("cannot be read: {problem}", problem=fault.strerror)
+            else Message("cannot be read: {problem}", problem=reason_of(fault))
         )
         yield _refused(name, path, why)
         return

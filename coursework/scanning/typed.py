@@ -7,7 +7,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
-from coursework.errors import BadInput
+from coursework.errors import BadInput, reason_of
 from coursework.system.limits import MOST_TABLE_BYTES, check_size
 from coursework.system.tables import as_written, csv_file, delimiter_of, duplicate_column, open_csv
 
@@ -69,7 +69,7 @@ def read_rows(path: Path, needed: Sequence[str], known: Sequence[str]) -> list[d
         with open_csv(path) as file:
             lines = list(file)  # which end as CSV has it: an answer may hold other ends of lines
     except OSError as fault:
-        raise BadInput("{path} cannot be read: {strerror}", path=path, strerror=fault.strerror) from fault
+        raise BadInput("{path} cannot be read: {strerror}", path=path, strerror=reason_of(fault)) from fault
     if not lines:
         return []
     rows = csv.reader(lines, delimiter=delimiter_of(lines[0]))

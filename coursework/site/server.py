@@ -21,7 +21,7 @@ from typing import TYPE_CHECKING, Any
 
 from coursework.api import open_course
 from coursework.database.store import Store
-from coursework.errors import BadInput, CourseworkError
+from coursework.errors import BadInput, CourseworkError, reason_of
 from coursework.messages import Message
 from coursework.site.application import application
 from coursework.site.frame.settings import Entrance, Site
@@ -125,7 +125,7 @@ def _refusal(host: str, port: int, fault: OSError) -> Message:
             "0.0.0.0 for every address of it"
         ),
         host=host,
-        problem=fault.strerror or str(fault),
+        problem=reason_of(fault),
     )
 
 

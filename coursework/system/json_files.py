@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any, NoReturn
 
-from coursework.errors import BadInput
+from coursework.errors import BadInput, reason_of
 from coursework.messages import Message
 
 _DIGITS = 300  #: of an integer; a float has no more before its point
@@ -26,7 +26,7 @@ def read_json(path: Path) -> Any:
     try:
         data = path.read_bytes()
     except OSError as fault:
-        raise BadInput("{file} cannot be read: {reason}", file=path, reason=fault.strerror) from fault
+        raise BadInput("{file} cannot be read: {reason}", file=path, reason=reason_of(fault)) from fault
     return json_of(data, str(path))
 
 

@@ -11,7 +11,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from coursework.errors import BadInput, nearest
+from coursework.errors import BadInput, nearest, reason_of
 from coursework.messages import Message
 
 _LARGEST = 1_000_000  #: characters of an assignment's file
@@ -62,9 +62,7 @@ def source_of(path: Path) -> str:
     try:
         return path.read_text("utf-8-sig")
     except OSError as fault:
-        raise BadInput(
-            "{file} cannot be read: {problem}", file=path, problem=fault.strerror or fault
-        ) from fault
+        raise BadInput("{file} cannot be read: {problem}", file=path, problem=reason_of(fault)) from fault
     except UnicodeDecodeError as fault:
         raise BadInput(
             "{file} is not UTF-8: {reason} at byte {position}",

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, TypeAlias
 
-from coursework.errors import BadInput, CourseworkError
+from coursework.errors import BadInput, CourseworkError, reason_of
 from coursework.system.blocks import processors
 from coursework.system.build_folder import install
 from coursework.system.processes import Task, in_turn, workers
@@ -77,7 +77,7 @@ def writing(path: Path) -> Iterator[None]:
         raise BadInput(
             "{file} cannot be written: {reason}; name another folder, or make this one writable",
             file=path,
-            reason=fault.strerror or fault,
+            reason=reason_of(fault),
         ) from fault
 
 
@@ -288,5 +288,5 @@ def _replacement_errors(path: Path) -> Iterator[None]:
                 "another --out"
             ),
             file=path,
-            reason=fault.strerror,
+            reason=reason_of(fault),
         ) from fault

@@ -222,9 +222,29 @@ def test_wrong_arguments_are_named_in_the_readers_language(cli, monkeypatch):
     rows = {
         ("bild",): "aucune commande « bild » ; vouliez-vous dire « build » ?",
         ("show", "--sead", "3"): "aucune option « --sead » ; vouliez-vous dire « --seed » ?",
-        ("show", "crank_pin", "--seed", "x"): "valeur non valable pour '--seed' : attend un nombre entier",
+        ("show", "crank_pin", "--seed", "x"): "valeur non valable pour « --seed » : attend un nombre entier",
         ("show", "crank_pin", "--seed"): "l’option « --seed » demande une valeur",
-        ("export",): "il manque 'PLATFORM'",
+        ("export",): "il manque « PLATEFORME »",
+        ("after", "nothing.toml"): "pour « FICHIER.toml » : il n’y a pas de fichier « nothing.toml »",
+        ("after", "."): "pour « FICHIER.toml » : « . » est un dossier",
+        ("gradebook", "moodle", "marks", "--score", "best"): "au choix : points, mark, percent",
+        (
+            "gradebook",
+            "moodle",
+            ".",
+            "--item",
+            "x",
+            "--out",
+            "y",
+            "--out-of",
+            "a lot",
+        ): "un nombre supérieur à 0",
+        (
+            "grade",
+            "x.csv",
+            "--issued",
+            "x.json",
+        ): "x.json ne peut pas être lu : il n’y a ni fichier ni dossier",
     }
     told = {arguments: cli(*arguments) for arguments in rows}
     found = {arguments: (status, err.replace("\u202f", " ")) for arguments, (status, _, err) in told.items()}

@@ -153,7 +153,7 @@ def test_a_form_with_semicolons_is_filled_and_marked(written, tmp_path):
 
 def test_an_unknown_sign_is_refused(tmp_path, capsys):
     assert command("simulate", "slotted_mechanism", "--out", tmp_path, "--decimal", "dot") == 2
-    assert "'point', 'comma'" in capsys.readouterr().err
+    assert "point, comma" in capsys.readouterr().err
 
 
 def test_a_formula_stays_text_where_semicolons_part_the_cells():

@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from coursework.errors import BadInput, counted, first_few
+from coursework.errors import BadInput, counted, first_few, reason_of
 from coursework.gradebook.columns import PRESENCE, SITTING, VERDICTS
 from coursework.gradebook.presence import AWAY
 from coursework.messages import Message
@@ -214,7 +214,7 @@ def _header(path: Path) -> list[str]:
         with open_csv(path) as file:
             line = file.readline()
     except OSError as fault:
-        raise BadInput("{path} cannot be read: {strerror}", path=path, strerror=fault.strerror) from fault
+        raise BadInput("{path} cannot be read: {strerror}", path=path, strerror=reason_of(fault)) from fault
     return [name.strip().strip('"').casefold() for name in line.split(delimiter_of(line))]
 
 
@@ -300,7 +300,7 @@ def _lines(
                     if any(c.strip() for c in cells):
                         raise _bad_line(path, reader.line_num, cells, columns, fault) from fault
     except OSError as fault:
-        raise BadInput("{path} cannot be read: {strerror}", path=path, strerror=fault.strerror) from fault
+        raise BadInput("{path} cannot be read: {strerror}", path=path, strerror=reason_of(fault)) from fault
     except csv.Error as fault:
         raise BadInput("{path} is not CSV: {fault}", path=path, fault=fault) from fault
 
