@@ -86,10 +86,15 @@ def gradebook(
     unless --provisional is given.
     """
     from coursework.gradebook.class_points import class_points
+    from coursework.gradebook.marks_record import read_record
     from coursework.gradebook.platform_gradebooks import platform_gradebook
+    from coursework.gradebook.scale import is_rescaled
 
     chosen = platform_gradebook(platform)
     scored, status = _final(class_points(marks, score), provisional)
+    record = read_record(marks if marks.is_dir() else marks.parent)
+    if score != "mark" and record and is_rescaled(record.scale):
+        warn("note: the total was scaled after the exam, and only marks count that: --score mark writes them")
     from coursework.gradebook.presence import EXCUSED
 
     if template is None:

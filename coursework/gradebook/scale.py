@@ -41,6 +41,11 @@ def mark_on(scale: Mapping[str, Any], points: float, out_of: float) -> str:
     return f"{float(min(steps * step, of)):.10g}"
 
 
+def is_rescaled(scale: Mapping[str, Any] | None) -> bool:
+    """Return whether somebody scaled the total, so that marks are not in proportion to points."""
+    return scale is not None and ("full" in scale or "curve" in scale)
+
+
 def _on_curve(curve: Sequence[Sequence[float]], points: Fraction) -> Fraction:
     """Return the mark of some points between two points of a curve; beyond the last, that of the last."""
     corners = [(exact(x), exact(y)) for x, y in curve]

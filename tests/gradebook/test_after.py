@@ -106,6 +106,25 @@ def test_a_change_is_previewed_confirmed_applied_by_grade_and_undone(marked, cap
     assert marks_in(folder) == before
 
 
+def test_a_gradebook_of_points_is_told_that_the_total_was_scaled(marked, capsys):
+    """A curve and points that are worth the best mark change marks alone; weights change points, too."""
+    folder, after = marked
+
+    def is_told(score):
+        capsys.readouterr()
+        asked = ["gradebook", "moodle", str(folder), *f"--item w3 --score {score} --out-of 20".split()]
+        run([*asked, "--out", str(folder.parent / "gradebook.xml")])
+        return "--score mark writes them" in capsys.readouterr().err
+
+    assert after("--weight", "1.1=9", "--yes") == 0
+    assert not is_told("points")
+    for scale in (("--full", "2"), ("--curve", "0:0 1:9 2:20")):
+        assert after(*scale, "--yes") == 0
+        assert [is_told(score) for score in ("points", "percent", "mark")] == [True, True, False]
+        assert after("--undo", "--yes") == 0
+    assert not is_told("points")
+
+
 def test_weights_changed_in_the_file_and_an_accepted_answer_count_when_confirmed(marked, capsys):
     folder, after = marked
     assert after("--restated", "--accept", "1.1=hm 3 or 4", "--yes") == 0

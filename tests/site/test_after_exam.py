@@ -185,6 +185,14 @@ def test_a_scale_gives_marks_to_an_assignment_that_stated_none(desk):
     assert ">Mark<" not in desk.page(TEACHER).text
     desk.browser(TEACHER).fill(f"/desk/{desk.number}/after", {"do": "confirm", "kind": "full", "points": "2"})
     assert ">Mark<" in desk.page(TEACHER).text
+    book = b"Student,ID,SIS User ID,SIS Login ID,Section,week3 (1)\nAda,1,4000,ada,A,\nCy,3,4002,cy,A,\n"
+    told = {}
+    for score in ("points", "mark"):
+        sent = {"platform": "canvas", "item": "week3", "score": score, "provisional": "1"}
+        files = {"template": ("book.csv", book)}
+        reply = desk.browser(TEACHER).fill(f"/desk/{desk.number}/gradebook", sent, files=files)
+        told[score] = "only marks count that" in reply.text
+    assert told == {"points": True, "mark": False}
 
 
 def test_a_file_changed_after_issuing_is_told_on_the_page_and_applied_as_one_decision(desk):

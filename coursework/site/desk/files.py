@@ -27,6 +27,7 @@ from coursework.gradebook.filling import Filled
 from coursework.gradebook.placing import as_texts
 from coursework.gradebook.platform_gradebooks import PLATFORMS, platform_gradebook
 from coursework.gradebook.rows import AnswerRow, PlatformFile, Rejected
+from coursework.gradebook.scale import is_rescaled
 from coursework.issuing.issued import COLUMNS
 from coursework.issuing.wide_form import wide_form
 from coursework.messages import as_message, localised
@@ -410,6 +411,8 @@ def gradebook(request: Request) -> Response:
                 ) from fault
             raise BadInput(texts["no_number"]) from None
     messages = [texts["filled"].format(filled.written, filled.column)]
+    if score != "mark" and is_rescaled((now.adjusted.assignment or {}).get("mark")):
+        messages.append(texts["rescaled"])
     outcomes = {
         "strangers": filled.strangers,
         "unclear": filled.unclear,
