@@ -77,7 +77,7 @@ def platform_gradebook(name: str) -> PlatformGradebook:
         There is none of that name.
     """
     if name not in PLATFORMS:
-        raise unknown("platform", name, PLATFORMS, "coursework gradebook")
+        raise unknown("platform", name, PLATFORMS)
     return PLATFORMS[name]
 
 
