@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import re
 from collections import Counter
-from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence, Set
 from dataclasses import dataclass, field
 from datetime import UTC, date, datetime
 from functools import cached_property
@@ -15,7 +15,7 @@ from typing import Any, NamedTuple
 
 from coursework.course.course import Course
 from coursework.course.marking_rules import Rules
-from coursework.errors import BadInput
+from coursework.errors import BadInput, nearest
 from coursework.gradebook.adjustments import (
     DIGITS,
     FOLLOWS_IN_OTHER_CASE,
@@ -560,14 +560,29 @@ def steps_on(
     Raises
     ------
     BadInput
-        The place names no question, or several where a single answer is meant.
+        The place names no question, or several where a single answer is meant; or an error has no such name.
     """
     questions = exam.called(place, lang) if place else [("", "")]
     if kind in (ACCEPTED, GIVEN) and len(questions) > 1:
         raise BadInput(
             "an answer is of one question; {name} names {count}", name=place[:40], count=len(questions)
         )
+    if kind == PRICE:
+        _check_error(exam, {exercise for exercise, _ in questions if exercise}, answer or "")
     return as_one(step(kind, *question, points, answer, reason, by) for question in questions)
+
+
+def _check_error(exam: Exam, exercises: Set[str], verdict: str) -> None:
+    """Refuse a named error that no answer can have; the mistakes are those that the exercises declare, by
+    default all of them."""
+    known = {FOLLOWS_IN_OTHER_CASE, *(f"slip:{name}" for name in PENALTIES if name != "mistake")}
+    for exercise in exercises or exam.issued.exercises:
+        known |= {f"mistake:{name}" for name in exam.course[exercise].solution.mistakes}
+    known |= {
+        line.verdict for graded in exam.machine for line in graded.lines.values() if ":" in line.verdict
+    }
+    if ":" in verdict and verdict not in known:
+        raise BadInput("no error {verdict!r}{nearest}", verdict=verdict[:40], nearest=nearest(verdict, known))
 
 
 def as_one(steps: Iterable[Decision]) -> list[Decision]:

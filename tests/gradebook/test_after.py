@@ -317,3 +317,9 @@ def test_questions_are_called_by_number_exercise_or_kind(marked, capsys):
     capsys.readouterr()
     assert after("--weight", "angel=9") == 2
     assert "the papers have 1.1 to 1.3, and the kinds numbers" in capsys.readouterr().err
+    for misspelt, near in (
+        ("1.1/slip:sgin", "slip:sign"),
+        ("follow_through:other", "follow_through:other_case"),
+    ):
+        assert after("--price", f"{misspelt}=0.5", "--yes") == 2
+        assert f"did you mean '{near}'" in capsys.readouterr().err
