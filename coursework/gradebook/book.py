@@ -321,6 +321,11 @@ def summary_table(book: Gradebook) -> tuple[Sequence[str], list[dict[str, Any]]]
     return columns, rows
 
 
+def is_away(book: Gradebook, student: str, result: Result) -> bool:
+    """Return whether a student answered nothing, and is stated to be absent or excused."""
+    return result.is_blank and book.presence.get(student) in AWAY
+
+
 def summary_rows(book: Gradebook) -> Iterator[dict[str, Any]]:
     """Yield the lines of ``summary.csv``."""
     issued = book.issued
@@ -328,8 +333,7 @@ def summary_rows(book: Gradebook) -> Iterator[dict[str, Any]]:
     for student, result in results(book):
         roster_cells = own_columns(issued, student)
         points, out_of = result.points, result.out_of
-        presence = book.presence.get(student, "")
-        is_marked = presence not in AWAY or not result.is_blank
+        is_marked = not is_away(book, student, result)
         yield {
             **{column: roster_cells.get(title, "") for title, column in carried.items()},
             **{column: roster_cells.get(title, "") for column, title in identity_columns.items()},
@@ -340,7 +344,7 @@ def summary_rows(book: Gradebook) -> Iterator[dict[str, Any]]:
             "out_of": f"{out_of:g}",
             LATE: f"{result.late:g}",
             PROVISIONAL: result.open or "",
-            PRESENCE: presence,
+            PRESENCE: book.presence.get(student, ""),
             MARK: mark_of(issued, result.counts, out_of) if is_marked else "",
             "percent": f"{100 * result.counts / out_of:.1f}" if out_of and is_marked else "",
             **{verdict: result.verdicts[verdict] for verdict in VERDICTS},

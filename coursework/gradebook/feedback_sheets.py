@@ -13,7 +13,7 @@ from typing import NamedTuple
 from coursework.course.course import Course
 from coursework.course.variant import Variant
 from coursework.errors import CourseworkError
-from coursework.gradebook.book import Gradebook
+from coursework.gradebook.book import Gradebook, is_away, results
 from coursework.gradebook.columns import own_columns
 from coursework.gradebook.feedback_form import USUAL, FeedbackForm, shows_solutions
 from coursework.gradebook.graded_sheet import Graded
@@ -274,12 +274,15 @@ def write_feedback(
     form: FeedbackForm = USUAL,
 ) -> None:
     """Write a file for each student and format, named like the student's handouts; for an assignment, one for
-    each sitting.
+    each sitting. Whoever was away has none.
 
     A sheet that cannot be printed is a warning, and costs no other.
     """
     by_student: dict[str, dict[int, list[Graded]]] = {student: {} for student in book.issued.students}
+    away = {student for student, result in results(book) if is_away(book, student, result)}
     for graded in sheets:
+        if graded.student in away:
+            continue
         by_student.setdefault(graded.student, {}).setdefault(graded.sitting, []).append(graded)
     unread = {sitting: {e for e, _ in unread_sheets} for sitting, unread_sheets in book.unread().items()}
     practice, solutions = PracticeOf(course, book.issued), shows_solutions(book.issued, form)

@@ -249,6 +249,7 @@ def grade_edited_marks(
     check_steps(decisions.standing_steps, issued)
     adjustments = decisions.adjustments
     book = Gradebook(adjustments.on(issued), sheets.rows_in, 0, sheets.rejected, sheets.warnings)
+    book.presence = presence_by_student(out, issued)
     sheets_shown = []
     history = History(out, _day(form), issued.renamed)
     with Tables(out, spreadsheet) as tables:

@@ -164,13 +164,16 @@ def test_who_is_absent_has_no_zero(exam, small_course, capsys, typed_for):
     (out / "attendance.csv").write_text(
         "student,present\nAda Lovelace,x\nBo Diddley,présente\nCy Young,ABJ\n"
     )
-    assert command("grade", answers, "--issued", issued, "--no-feedback", "--names") == 0
-    summary = [(row["student"], row["presence"], row["percent"]) for row in table(marks / "summary.csv")]
-    assert summary == [
-        ("Ada Lovelace", "present", "100.0"),
-        ("Bo Diddley", "present", "0.0"),
-        ("Cy Young", "excused", ""),
-    ]
+    for graded in ((answers, "--names"), ("--from", marks / "marks.csv")):
+        assert command("grade", *graded, "--issued", issued, "--formats", "html") == 0
+        summary = [(row["student"], row["presence"], row["percent"]) for row in table(marks / "summary.csv")]
+        assert summary == [
+            ("Ada Lovelace", "present", "100.0"),
+            ("Bo Diddley", "present", "0.0"),
+            ("Cy Young", "excused", ""),
+        ]
+        sheets = ["ada-lovelace.html", *(["bo-diddley.html"] if typed_for else [])]
+        assert sorted(path.name for path in (marks / "feedback").iterdir()) == sheets
     scored = {one.name: one for one in class_points(marks, "points")}
     assert [scored[name].is_marked for name in NAMES[:3]] == [True, True, False]
     found = MarkedFolder(open_course(small_course), issued, marks).exam
