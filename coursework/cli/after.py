@@ -357,6 +357,13 @@ def _value(option: str, text: str) -> float:
 # ------------------------------------------------------------------------ lines
 
 
+def _print(text: str) -> None:
+    """Print a line in the typography of the language of messages."""
+    from coursework.language.typography import typeset
+
+    click.echo(typeset(text, language_of_messages()))
+
+
 def _tell(
     exam: Exam, incomplete: Sequence[str], restated: Sequence[Decision], notes: Sequence[Message]
 ) -> None:
@@ -367,51 +374,49 @@ def _tell(
     texts, colon = words(lang)["after"], words(lang)["sheet"]["colon"]
     now = exam.distribution()
     present, names = len(now.marks), exam.issued.students or tuple(now.marks)
-    click.echo(texts["handed_in"].format(len(names), present, len(exam.provisional)))
+    _print(texts["handed_in"].format(len(names), present, len(exam.provisional)))
     if any(exam.missing):
-        click.echo(texts["missing"].format(*exam.missing))
-    click.echo(
-        texts["marks"].format(said.number(now.mean, lang), said.number(now.of, lang), now.passed, present)
-    )
+        _print(texts["missing"].format(*exam.missing))
+    _print(texts["marks"].format(said.number(now.mean, lang), said.number(now.of, lang), now.passed, present))
     counts = zip(said.bins(now, lang), now.counts, strict=True)
     print_table([{texts["mark"]: name, texts["students"]: count} for name, count in counts])
-    click.echo(f"\n{texts['left']}")
+    _print(f"\n{texts['left']}")
     for why, (cards, answers) in exam.cards.items():
-        click.echo("  " + texts["cards"].format(texts["cards_by"][why], cards, answers))
+        _print("  " + texts["cards"].format(texts["cards_by"][why], cards, answers))
     if exam.cards:
-        click.echo(f"  {texts['list_them']}{colon} --cards")
+        _print(f"  {texts['list_them']}{colon} --cards")
     if exam.non_answers:
-        click.echo("  " + texts["silent"].format(len(exam.non_answers)) + " --put-away")
+        _print("  " + texts["silent"].format(len(exam.non_answers)) + " --put-away")
     if exam.rejected:
-        click.echo("  " + texts["rejected"].format(len(exam.rejected)))
+        _print("  " + texts["rejected"].format(len(exam.rejected)))
         reasons = Counter(localised(row.reason) for row in exam.rejected)
         for reason, count in reasons.most_common(_REASONS):
-            click.echo("    " + one_line(texts["rejected_why"].format(reason, count)))
+            _print("    " + one_line(texts["rejected_why"].format(reason, count)))
     if incomplete:
-        click.echo(f"  {texts['incomplete'].format(len(incomplete))}{colon} {_named(list(incomplete))}")
+        _print(f"  {texts['incomplete'].format(len(incomplete))}{colon} {_named(list(incomplete))}")
     if not exam.cards and not exam.rejected and not incomplete:
-        click.echo("  " + texts["nothing_left"])
+        _print("  " + texts["nothing_left"])
     if exam.provisional:
-        click.echo(f"  {texts['provisional']}{colon} {_named(list(exam.provisional))}")
+        _print(f"  {texts['provisional']}{colon} {_named(list(exam.provisional))}")
     if exam.patterns:
-        click.echo(f"\n{texts['seen']}")
+        _print(f"\n{texts['seen']}")
     for pattern in exam.patterns:
         shown = [f"{student} ({place})" for student, place in pattern.sheets]
-        click.echo(f"  {texts['patterns'][pattern.kind]}{colon} {one_line(_named(shown))}")
-    click.echo("")
+        _print(f"  {texts['patterns'][pattern.kind]}{colon} {one_line(_named(shown))}")
+    _print("")
     print_table([_question_row(question, texts, lang) for question in exam.table], texts["table"])
     if restated or notes:
-        click.echo(f"\n{texts['file_says']}")
+        _print(f"\n{texts['file_says']}")
     for _, text in said.batch_texts(exam, restated, lang):
-        click.echo(f"  {text}")
+        _print(f"  {text}")
     for note in notes:
-        click.echo(f"  {localised(note)}")
+        _print(f"  {localised(note)}")
     if restated:
-        click.echo(f"  {texts['apply_file']}{colon} --restated")
-    click.echo(f"\n{texts['steps']}")
+        _print(f"  {texts['apply_file']}{colon} --restated")
+    _print(f"\n{texts['steps']}")
     lines = step_lines(exam, (*exam.decisions.standing_steps, *exam.put_aside), lang)
     for line in lines or [texts["no_steps"]]:
-        click.echo(f"  {line}")
+        _print(f"  {line}")
 
 
 def _tell_cards(exam: Exam) -> None:
@@ -479,14 +484,14 @@ def _tell_preview(
     lang = language_of_messages()
     texts, colon = words(lang)["after"], words(lang)["sheet"]["colon"]
     made = steps[: len(steps) - len(undone)]
-    click.echo(texts["preview"])
+    _print(texts["preview"])
     for _, text in said.batch_texts(exam, (step for step in made if not step.student), lang):
-        click.echo(one_line(text))
+        _print(one_line(text))
     for line in reversed(step_lines(exam, (step for step in undone if not step.student), lang)):
-        click.echo(texts["to_undo"].format(line))
+        _print(texts["to_undo"].format(line))
     for title, among in (("put_away", made), ("back", undone)):
         if own := [f"{exam.shown(one.student)} ({one.answer})" for one in among if one.student]:
-            click.echo(one_line(f"{texts[title]}{colon} {_named(own)}"))
+            _print(one_line(f"{texts[title]}{colon} {_named(own)}"))
     changes = preview.changes
     print_table(
         [
@@ -499,14 +504,14 @@ def _tell_preview(
         ]
     )
     if not changes:
-        click.echo(texts["nobody_moves"])
+        _print(texts["nobody_moves"])
     rows = zip(said.bins(preview.now, lang), preview.before.counts, preview.now.counts, strict=True)
     print_table([{texts["mark"]: n, texts["before"]: b, texts["now"]: a} for n, b, a in rows])
     still = len(preview.now.marks) - len(changes)
-    click.echo(texts["moves"].format(preview.rise, preview.fall, still))
+    _print(texts["moves"].format(preview.rise, preview.fall, still))
     means = (said.number(one.mean, lang) for one in (preview.before, preview.now))
-    click.echo(texts["means"].format(*means, said.number(preview.now.of, lang)))
-    click.echo(texts["pass_line"].format(preview.before.passed, preview.now.passed))
+    _print(texts["means"].format(*means, said.number(preview.now.of, lang)))
+    _print(texts["pass_line"].format(preview.before.passed, preview.now.passed))
 
 
 def _as_json(exam: Exam) -> dict[str, Any]:

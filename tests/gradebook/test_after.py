@@ -72,6 +72,10 @@ def test_what_is_left_is_told_with_the_proposal_that_fits(marked, capsys, monkey
     assert "no student 'Nobody' on the roster (lignes" in text  # as grade wrote it, then in English
     assert "les meilleurs la manquent" in text
     assert "sur 3\n" in text
+    assert after("--put-away", "--neutralise", "1.3") == 0
+    text += capsys.readouterr().out
+    assert "rien n’est encore changé" in text
+    assert not re.findall(r"\w'\w| [;:!?»](?=\s)", text.replace("student 'Nobody'", ""))
 
 
 def test_a_change_is_previewed_confirmed_applied_by_grade_and_undone(marked, capsys):
