@@ -60,7 +60,8 @@
   function reading(card) {
     if (card.sort !== "question") return "";
     if (!card.candidate) return said("queue.nothing_read");
-    return said("queue.was_read") + " " + card.candidate + ((card.waits === "digit" || card.waits === "doubted") && card.confidence ? " · " + fill(said("queue.sure"), card.confidence) : "");
+    const text = card.what === "number" ? card.candidate.replace(".", (0.5).toLocaleString(lang).charAt(1)) : card.candidate;
+    return said("queue.was_read") + " " + text + ((card.waits === "digit" || card.waits === "doubted") && card.confidence ? " · " + fill(said("queue.sure"), card.confidence) : "");
   }
   function draw() {
     document.documentElement.lang = lang;

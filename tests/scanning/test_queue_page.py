@@ -131,6 +131,7 @@ def test_what_was_typed_is_there_when_the_page_is_opened_again(opened):
 def test_it_speaks_both_languages_and_names_stay_text(opened):
     assert opened.locator("html").get_attribute("lang") == "en"
     opened.locator("[data-lang=fr]").click()
+    assert "lu 319,8 mm" in opened.locator(".card").first.inner_text()
     assert "coulisse" in opened.locator("#cards h2").first.inner_text()
     assert opened.locator("h3", has_text="Max <b>").count() > 0
     assert opened.locator("#cards b").count() == 0
