@@ -12,8 +12,9 @@ from hashlib import sha256
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from sqlalchemy import Connection, delete, insert, literal, select
+from sqlalchemy import Connection, insert, literal, select
 
+from coursework.database.store import put_rows
 from coursework.database.tables import decision, mark, marking, variant, worksheet
 from coursework.errors import BadInput, UnknownName, nearest
 from coursework.gradebook.adjustments import ADJUSTMENTS, check_adjustment
@@ -228,11 +229,10 @@ def store_new_decisions(connection: Connection, assignment_id: int, files: Decis
 def remember_written(connection: Connection, assignment_id: int, files: DecisionFiles) -> None:
     """Record the content of the files, so that it counts as known."""
     for path, decisions in files.files.items():
-        key = {"assignment_id": assignment_id, "file": _file(path)}
+        row = {"assignment_id": assignment_id, "file": _file(path)}
         lines = [_line(entry) for entry in decisions if entry.kind != EDITED]
         if lines != [_line(entry) for entry in _remembered(connection, assignment_id, path)]:
-            connection.execute(delete(worksheet).filter_by(**key))
-            connection.execute(insert(worksheet).values(lines=lines, **key))
+            put_rows(connection, worksheet, [{**row, "lines": lines}], list(row))
 
 
 _STATED = Decision._fields.index("made")  #: fields of a decision that a worksheet has, and its ids

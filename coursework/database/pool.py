@@ -6,8 +6,9 @@ import json
 from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
 
-from sqlalchemy import Connection, delete, insert, select
+from sqlalchemy import Connection, select
 
+from coursework.database.settings import put_value
 from coursework.database.tables import setting, variant
 
 
@@ -40,10 +41,7 @@ def _of_text(text: str) -> Pooled:
 
 def put_pooled(connection: Connection, exercise: str, version: int, seeds: Pooled) -> None:
     """Store the seeds found, in place of the earlier ones."""
-    name = _name(exercise, version)
-    text = json.dumps({"seeds": list(seeds.seeds), "all": seeds.are_all})
-    connection.execute(delete(setting).where(setting.c.name == name))
-    connection.execute(insert(setting).values(name=name, value=text))
+    put_value(connection, _name(exercise, version), {"seeds": list(seeds.seeds), "all": seeds.are_all})
 
 
 def issued_seeds(connection: Connection, exercise: str) -> frozenset[str]:

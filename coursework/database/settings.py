@@ -6,8 +6,9 @@ import json
 import secrets
 from typing import Any
 
-from sqlalchemy import Connection, Select, delete, insert, select
+from sqlalchemy import Connection, Select, delete, select
 
+from coursework.database.store import put_rows
 from coursework.database.tables import setting
 from coursework.errors import BadInput
 
@@ -25,8 +26,9 @@ def secret(connection: Connection) -> bytes:
     """
     stored = connection.execute(select(setting.c.value).where(setting.c.name == _KEY)).scalar()
     if stored is None:
-        stored = secrets.token_hex(32)
-        connection.execute(insert(setting).values(name=_KEY, value=stored))
+        row = {"name": _KEY, "value": secrets.token_hex(32)}
+        put_rows(connection, setting, [row], ["name"], replaces=False)  # unless another process was first
+        stored = connection.execute(select(setting.c.value).where(setting.c.name == _KEY)).scalar_one()
     try:
         return bytes.fromhex(stored)
     except ValueError:
@@ -50,8 +52,8 @@ def value_of(connection: Connection, name: str) -> Any:
 
 def put_value(connection: Connection, name: str, value: Any) -> None:
     """Store a value under a name, in place of the earlier one."""
-    connection.execute(delete(setting).where(setting.c.name == name))
-    connection.execute(insert(setting).values(name=name, value=json.dumps(value, ensure_ascii=False)))
+    row = {"name": name, "value": json.dumps(value, ensure_ascii=False)}
+    put_rows(connection, setting, [row], ["name"])
 
 
 def drop_value(connection: Connection, name: str) -> None:

@@ -2,15 +2,20 @@
 
 from __future__ import annotations
 
+from threading import Barrier, BrokenBarrierError, Thread
+
 import pytest
 from alembic.autogenerate import compare_metadata
 from alembic.runtime.migration import MigrationContext
 from sqlalchemy import Table, insert, inspect, select, update
+from sqlalchemy.exc import SQLAlchemyError
 from stored_class import ANA, content, put, rows
 from tables import each_row
 
 import coursework
 from coursework.database.assignments import issued_content as content_of
+from coursework.database.pool import Pooled, put_pooled
+from coursework.database.settings import put_value, renew_secret, secret
 from coursework.database.store import Store
 from coursework.database.submissions import rows_of
 from coursework.database.tables import METADATA, setting
@@ -158,3 +163,34 @@ def test_more_who_ask_than_are_served_at_once_is_told_in_a_line(store):
         pass
     for one in taken:
         one.close()
+
+
+@each_row(
+    "put",
+    [
+        lambda connection: put_value(connection, "seen", 1),
+        lambda connection: put_pooled(connection, "grashof", 1, Pooled((1,))),
+        lambda connection: (renew_secret(connection), secret(connection)),
+    ],
+)
+def test_two_processes_that_put_one_setting_at_once_both_succeed(store, put):
+    failed, together = [], Barrier(2)
+
+    def write():
+        try:
+            for _ in range(20):
+                together.wait(20)
+                with store.begin() as connection:
+                    put(connection)
+        except SQLAlchemyError as fault:
+            failed.append(fault)
+            together.abort()
+        except BrokenBarrierError:
+            pass
+
+    threads = [Thread(target=write) for _ in range(2)]
+    for one in threads:
+        one.start()
+    for one in threads:
+        one.join()
+    assert not failed
