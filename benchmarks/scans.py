@@ -8,10 +8,9 @@ python benchmarks/scans.py FOLDER wrong            # what was read wrong
 
 Two thirds of the answers are right ones of a variant, rounded; of the wrong ones most are near a right one: a
 digit changed or exchanged, another sign, a point elsewhere, a few per cent too many. FOLDER keeps the printed
-sheets and a line a page, ``read.jsonl``. The handwriting is of MNIST's test set and, on every second thirty
-pages, of other writers: UCI's "Optical Recognition of Handwritten Digits", 32 by 32 pixels. Nothing was
-trained with either. They are read from the files ``t10k-*`` and ``optdigits-orig.*`` in FOLDER; without them,
-400 of MNIST's from the tests and UCI's digits as scikit-learn has them, 8 by 8 pixels and so blurred.
+sheets and a line a page, ``read.jsonl``. Every thirty pages are by other writers, of collections that
+`handwriting.py` lists and reads from FOLDER; nothing was trained with them. Where none is there, they are 400
+of MNIST's test set from the tests.
 """
 
 from __future__ import annotations
@@ -35,6 +34,7 @@ TESTS = Path(__file__).parents[1] / "tests"
 sys.path.insert(0, str(TESTS))
 
 import scanned_pages as simulated  # noqa: E402
+from handwriting import bitmaps, formulas, inked, mnist, paths  # noqa: E402
 
 from coursework import open_course  # noqa: E402
 from coursework.marking.marking import is_right_alone  # noqa: E402
@@ -57,7 +57,6 @@ EXERCISES = (
     "crank_shaper_drawn",
 )
 SIZES = ("a4", "letter")
-WRITERS = ("MNIST", "others")
 
 
 def sheets(folder: Path) -> list[tuple[AnswerPage, Path]]:
@@ -79,32 +78,35 @@ def sheets(folder: Path) -> list[tuple[AnswerPage, Path]]:
     return found
 
 
+#: Writers whom no training saw, and how their digits are read.
+HANDS = {
+    "American": lambda folder: mnist(folder, "t10k"),
+    "Turkish": lambda folder: paths(folder, "tes"),
+    "French": formulas,
+    "Turkish, stretched": lambda folder: bitmaps(folder, "windep"),
+}
+
+
+def hand_of(index: int) -> str:
+    return list(HANDS)[index // 30 % len(HANDS)]
+
+
 @cache
-def bank(folder: Path, which: int) -> simulated.Bank:
-    return simulated.handwriting(*(_other_writers(folder) if which else _mnist(folder)))
-
-
-def _mnist(folder: Path) -> tuple[np.ndarray, np.ndarray]:
+def bank(folder: Path, hand: str) -> simulated.Bank:
     if not (folder / "t10k-images-idx3-ubyte").exists():
         with np.load(TESTS / "handwritten_digits.npz") as kept:
-            return kept["digits"], kept["labels"]
-    images = np.frombuffer((folder / "t10k-images-idx3-ubyte").read_bytes()[16:], np.uint8)
-    return images.reshape(-1, 28, 28), np.frombuffer(
-        (folder / "t10k-labels-idx1-ubyte").read_bytes()[8:], np.uint8
-    )
+            return simulated.handwriting(kept["digits"], kept["labels"])
+    digits, labels = HANDS[hand](folder)
+    if isinstance(digits, np.ndarray):
+        return simulated.handwriting(digits, labels)
 
+    def drawn(digit: int, rng: np.random.Generator) -> np.ndarray:
+        strokes = digits[rng.choice(np.flatnonzero(labels == digit))]
+        picture = inked(strokes, 110, rng.uniform(5, 11)) / 255
+        rows, columns = np.flatnonzero(picture.max(1) > 0.2), np.flatnonzero(picture.max(0) > 0.2)
+        return picture[rows[0] : rows[-1] + 1, columns[0] : columns[-1] + 1]
 
-def _other_writers(folder: Path) -> tuple[np.ndarray, np.ndarray]:
-    if bitmaps := sorted(folder.glob("optdigits-orig.*")):
-        lines = [line.strip() for path in bitmaps for line in path.read_text("ascii").splitlines()]
-        first = [k for k, line in enumerate(lines) if len(line) == 32 and set(line) <= {"0", "1"}][::32]
-        digits = [[[255 * int(dot) for dot in row] for row in lines[k : k + 32]] for k in first]
-        return np.array(digits, np.uint8), np.array([int(lines[k + 32]) for k in first])
-    from sklearn.datasets import load_digits
-
-    digits = load_digits()
-    large = [cv2.resize(np.float32(d), (24, 24), interpolation=cv2.INTER_CUBIC) for d in digits.images]
-    return np.clip(large, 0, None), digits.target
+    return drawn
 
 
 @cache
@@ -201,7 +203,7 @@ def one(folder: Path, index: int, page: AnswerPage, file: str, only: str = "") -
     rng = np.random.default_rng([23, index])
     kind = only or list(simulated.KINDS)[index // 2 % len(simulated.KINDS)]
     student = Student(page, np.random.default_rng([29, index]))
-    hand = simulated.a_hand(rng, bank(folder, index // 30 % 2))
+    hand = simulated.a_hand(rng, bank(folder, hand_of(index)))
     hand.answers = student.answer
     filled, wrote = simulated.filled_in(printed(file), page, hand, odd=0.1)
     scan = simulated.KINDS[kind](rng)
@@ -213,7 +215,7 @@ def one(folder: Path, index: int, page: AnswerPage, file: str, only: str = "") -
         "index": index,
         "kind": kind,
         "pen": hand.pen,
-        "writers": WRITERS[index // 30 % 2],
+        "writers": hand_of(index),
         "found": read.found,
         "seconds": seconds,
     }
@@ -313,31 +315,28 @@ def table(folder: Path) -> None:
 
 
 def doubted(folder: Path) -> None:
-    """What is taken of the doubted numbers, by the least probability of a right answer."""
+    """What a person looks at after right answers are taken, of each kind of scan and of each collection."""
     by: dict[str, list[dict[str, Any]]] = defaultdict(list)
     for row in kept(folder):
-        by[row["kind"]].append(row)
-        by["all"].append(row)
+        for name in (row["kind"], row["writers"], "all"):
+            by[name].append(row)
     print(
-        "| scanned as | pages | places | doubted | least probability | taken | of the right ones | "
-        "taken though something else was wrong | a person besides |"
+        "| pages | places | clean | read wrong | to a person besides | doubted | right ones | taken | though "
+        "something else was wrong | left of the clean ones |\n|---|" + "--:|" * 9
     )
-    print("|---|--:|--:|--:|--:|--:|--:|--:|--:|")
-    for kind, rows in by.items():
+    for name, rows in by.items():
         total: Counter[str] = Counter()
         for row in rows:
             total.update(row["counts"])
-        asked = sum(total[k] for k in ("right", "wrong", "must wait", "waits"))
+        clean = sum(total[k] for k in ("right", "wrong", "waits"))
         cases = [case for row in rows for case in row["doubted"]]
-        for least in (LIKELY, 0.8, 0.9):
-            taken = [case for case in cases if case[0] >= least]
-            false = sum(not case[2] for case in taken)
-            share = sum(case[2] for case in taken) / max(sum(case[2] for case in cases), 1)
-            left = (total["waits"] - len(taken)) / max(asked, 1)
-            print(
-                f"| {kind} | {len(rows)} | {asked} | {len(cases)} | {least} | {len(taken)} | "
-                f"{share:.0%} | {false} | {left:.1%} |"
-            )
+        taken = [case for case in cases if case[0] >= LIKELY]
+        left = (total["waits"] - len(taken)) / max(clean, 1)
+        print(
+            f"| {name}, {len(rows)} | {clean + total['must wait']} | {clean} | {total['wrong']} | "
+            f"{total['waits'] / max(clean, 1):.1%} | {len(cases)} | {sum(case[2] for case in cases)} | "
+            f"{len(taken)} | {sum(not case[2] for case in taken)} | {left:.1%} |"
+        )
 
 
 def wrong(folder: Path) -> None:

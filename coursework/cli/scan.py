@@ -53,11 +53,11 @@ def _ready() -> None:
 @click.option(
     "--sure",
     type=DecimalNumber(0.9, 1.0),
-    default=0.995,
+    default=0.99,
     show_default=True,
     help=(
         "Confidence below which a box is left to a person. For black-and-white scans the doubt counts "
-        "fivefold."
+        "tenfold."
     ),
 )
 @decimal_option

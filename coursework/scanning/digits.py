@@ -20,7 +20,7 @@ BLANK, OTHER = 10, 12  # 11 is the minus sign
 
 #: A digit, or an emptiness, of at least this confidence is taken; what is below goes to a person
 #: (docs/scans.md: how often it errs).
-CONFIDENT = 0.995
+CONFIDENT = 0.99
 
 #: A doubted number is taken if it is a right answer of its variant with at least this probability.
 LIKELY = 0.8

@@ -21,7 +21,7 @@ from coursework.sheets.answer_pages import AnswerField, AnswerPage
 
 _CODE = re.compile(r"CW1 ([A-Z2-7]+) (\d+)/(\d+)")
 #: Times must a box be in black and white, where a gap of a stroke closes and an open 4 looks like a 6.
-_SURER = 5
+_SURER = 10
 
 #: What a picture may be found to be.
 FOUND = ("answers", "statement", "no code", "no sheet", "other assignment", "two pages", "not straight")

@@ -107,7 +107,7 @@ def test_a_scan_in_black_and_white_is_known_for_one(kind, sheet):
 
 
 @each_row(("bilevel", "waits"), [("", False), ("otsu", True)])
-def test_in_black_and_white_doubt_counts_fivefold(bilevel, waits, sheet):
+def test_in_black_and_white_doubt_counts_tenfold(bilevel, waits, sheet):
     def hesitant(cells):
         found, sure = READER(cells)
         return found, np.minimum(sure, 0.998)
