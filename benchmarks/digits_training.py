@@ -153,10 +153,8 @@ def of_pages(chunk: int, folder: Path, work: Path) -> tuple[np.ndarray, np.ndarr
     from coursework.scanning.straightening import NotStraight, straightened
     from coursework.scanning.strokes import cells, is_bare
 
-    bank, kinds = (
-        scans.simulated.handwriting(*american(folder, "check")),
-        list(scans.simulated.KINDS.values()),
-    )
+    bank = scans.simulated.handwriting(*american(folder, "check"))
+    kinds = list(scans.simulated.KINDS.values())
     sheets = [each for each in scans.sheets(work) if any(field.what == "number" for field in each[0].fields)]
     boxes, classes = [], []
     for index in range(chunk * PAGES, (chunk + 1) * PAGES):

@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 
 from sqlalchemy import Connection, select
 
-from coursework.database.settings import put_value
+from coursework.database.settings import put_value, value_of
 from coursework.database.tables import setting, variant
 
 
@@ -21,21 +21,18 @@ class Pooled(NamedTuple):
 
 def pooled(connection: Connection, exercise: str, version: int) -> Pooled:
     """Return the seeds found for a version of an exercise; none if nobody has searched."""
-    text = connection.execute(
-        select(setting.c.value).where(setting.c.name == _name(exercise, version))
-    ).scalar()
-    return _of_text(text) if text else Pooled()
+    pool = value_of(connection, _name(exercise, version))
+    return _of_value(pool) if pool else Pooled()
 
 
 def pools(connection: Connection, versions: Mapping[str, int]) -> dict[str, Pooled]:
     """Return the seeds found for exercises in their versions; exercises without a search are omitted."""
     names = {_name(exercise, version): exercise for exercise, version in versions.items()}
     rows = connection.execute(select(setting.c.name, setting.c.value).where(setting.c.name.in_(names)))
-    return {names[row.name]: _of_text(row.value) for row in rows}
+    return {names[row.name]: _of_value(json.loads(row.value)) for row in rows}
 
 
-def _of_text(text: str) -> Pooled:
-    pool = json.loads(text)
+def _of_value(pool: Mapping[str, Any]) -> Pooled:
     return Pooled(tuple(pool["seeds"]), bool(pool["all"]))
 
 
