@@ -333,7 +333,7 @@ def summary_rows(book: Gradebook) -> Iterator[dict[str, Any]]:
     for student, result in results(book):
         roster_cells = own_columns(issued, student)
         points, out_of = result.points, result.out_of
-        is_marked = not is_away(book, student, result)
+        marked_of = 0.0 if is_away(book, student, result) else out_of
         yield {
             **{column: roster_cells.get(title, "") for title, column in carried.items()},
             **{column: roster_cells.get(title, "") for column, title in identity_columns.items()},
@@ -345,7 +345,7 @@ def summary_rows(book: Gradebook) -> Iterator[dict[str, Any]]:
             LATE: f"{result.late:g}",
             PROVISIONAL: result.open or "",
             PRESENCE: book.presence.get(student, ""),
-            MARK: mark_of(issued, result.counts, out_of) if is_marked else "",
-            "percent": f"{100 * result.counts / out_of:.1f}" if out_of and is_marked else "",
+            MARK: mark_of(issued, result.counts, marked_of),
+            "percent": f"{100 * result.counts / marked_of:.1f}" if marked_of else "",
             **{verdict: result.verdicts[verdict] for verdict in VERDICTS},
         }

@@ -21,7 +21,7 @@ def exam(small_course, tmp_path):
     (tmp_path / "class.csv").write_text(ROSTER)
     (tmp_path / "final.toml").write_text(
         'roster = "class.csv"\nidentity = ["number"]\nformats = "ipynb"\nsolutions = false\nanonymous '
-        "= true\n"
+        "= true\nmark = { of = 20 }\n"
         'secret = "0123456789abcdef0123456789abcdef"\n[[exercises]]\nname = "crank_pin"\n'
     )
     out = tmp_path / "out"
@@ -166,11 +166,11 @@ def test_who_is_absent_has_no_zero(exam, small_course, capsys, typed_for):
     )
     for graded in ((answers, "--names"), ("--from", marks / "marks.csv")):
         assert command("grade", *graded, "--issued", issued, "--formats", "html") == 0
-        summary = [(row["student"], row["presence"], row["percent"]) for row in table(marks / "summary.csv")]
-        assert summary == [
-            ("Ada Lovelace", "present", "100.0"),
-            ("Bo Diddley", "present", "0.0"),
-            ("Cy Young", "excused", ""),
+        asked = ("student", "presence", "percent", "mark")
+        assert [tuple(row[name] for name in asked) for row in table(marks / "summary.csv")] == [
+            ("Ada Lovelace", "present", "100.0", "20"),
+            ("Bo Diddley", "present", "0.0", "0"),
+            ("Cy Young", "excused", "", ""),
         ]
         sheets = ["ada-lovelace.html", *(["bo-diddley.html"] if typed_for else [])]
         assert sorted(path.name for path in (marks / "feedback").iterdir()) == sheets
