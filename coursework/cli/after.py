@@ -192,15 +192,19 @@ def after(
             _tell(exam, incomplete, changed.steps, changed.notes)
         return FOUND if exam.cards or exam.rejected or incomplete or changed.steps else DONE
     preview = exam.preview(steps)
+    if yes:  # before a line is printed, since the reader of a pipe may close it
+        confirm(steps, feedback)
     if as_json:
         print_json(_preview_json(preview))
-    else:
-        _tell_preview(exam, steps, preview, undone)
-    if yes or (not as_json and sys.stdin.isatty() and click.confirm(localised(Message("Confirm?")))):
+        return DONE
+    _tell_preview(exam, steps, preview, undone)
+    if not yes and sys.stdin.isatty() and click.confirm(localised(Message("Confirm?"))):
         confirm(steps, feedback)
+        yes = True
+    if yes:
         message = "{decisions} taken back" if undone else "{decisions} kept; --undo takes the last one back"
         say(message, decisions=counted(len({one.withdraws or one.id for one in steps}), "decision"))
-    elif not as_json:
+    else:
         say("nothing is written: --yes confirms it")
     return DONE
 
@@ -248,7 +252,7 @@ def _in_folder(
         for warning in book.warnings:
             warn("note: {note}", note=one_line(localised(warning)))
         if not feedback and (folder.folder / "feedback").is_dir():
-            say("the feedback sheets are those of before: --feedback writes them again, once at the end")
+            warn("the feedback sheets are those of before: --feedback writes them again, once at the end")
 
     return folder.exam, confirm
 

@@ -2,7 +2,10 @@
 undone."""
 
 import json
+import os
 import re
+import subprocess
+import sys
 
 import pytest
 from small_assignment import grade, issue, item, right, table
@@ -108,6 +111,19 @@ def test_a_change_is_previewed_confirmed_applied_by_grade_and_undone(marked, cap
     assert after("--undo-since", "2000-01-01", "--yes") == 0
     assert "3 decisions taken back" in capsys.readouterr().out
     assert marks_in(folder) == before
+
+
+def test_what_is_confirmed_is_kept_if_nobody_reads_the_preview_and_json_is_json_alone(marked, capsys):
+    folder, after = marked
+    confirmed = ("--neutralise", "1.3", "--yes", "--by", "Mme Roy")
+    asked = [sys.executable, "-m", "coursework", "--course", folder.parent / "small", "after"]
+    reader, writer = os.pipe()
+    os.close(reader)
+    with os.fdopen(writer, "w") as closed:
+        subprocess.run([*asked, folder.parent / "week3.toml", *confirmed], stdout=closed, check=False)
+    assert [row["kind"] for row in table(folder / "decisions.csv")] == ["neutral"]
+    assert said_by(capsys, after, "--undo", "--yes")["changes"]
+    assert [row["kind"] for row in table(folder / "decisions.csv")] == ["neutral", "withdrawn"]
 
 
 def test_a_gradebook_of_points_is_told_that_the_total_was_scaled(marked, capsys):
