@@ -405,7 +405,7 @@ def _tell(
     if exam.patterns:
         _print(f"\n{texts['seen']}")
     for pattern in exam.patterns:
-        shown = [f"{student} ({place})" for student, place in pattern.sheets]
+        shown = [f"{student} ({place})" if place else student for student, place in pattern.sheets]
         _print(f"  {texts['patterns'][pattern.kind]}{colon} {one_line(_named(shown))}")
     _print("")
     print_table([_question_row(question, texts, lang) for question in exam.table], texts["table"])

@@ -72,14 +72,15 @@ _NOBODY = 0.02  #: mean share of the points up to which nobody got a question
 BINS = 10  #: of the distribution of marks
 
 #: Patterns that are named for a person, in the order in which they are shown.
-PATTERNS = ("exchanged", "radians", "slash", "alike")
+PATTERNS = ("exchanged", "radians", "slash", "alike", "blank")
 
 
 class SuspiciousPattern(NamedTuple):
     """Suspicious pattern, and the sheets that show it."""
 
     kind: str
-    sheets: tuple[tuple[str, str], ...]  #: student, and the questions or whose papers it is like
+    #: Student, and the questions or whose papers it is like; an empty text for the whole of a sheet.
+    sheets: tuple[tuple[str, str], ...]
 
 
 @dataclass(frozen=True)
@@ -210,11 +211,16 @@ class Exam:
     @cached_property
     def present(self) -> frozenset[str]:
         """Students who handed something in or were present. Of whoever is away, blank lines are nothing."""
-        answered = {graded.student for graded in self.decided if graded.has_answer}
-        blank = {graded.student for graded in self.decided} - answered
         stated = {student for student, presence in self.presence.items() if presence == PRESENT}
         away = {student for student, presence in self.presence.items() if presence in AWAY}
-        return frozenset(answered | stated | (blank - away))
+        handed_in = {graded.student for graded in self.decided}
+        return frozenset(stated | (handed_in - (self._blank & away)))
+
+    @cached_property
+    def _blank(self) -> frozenset[str]:
+        """Students of whose sheets every line is blank."""
+        answered = {graded.student for graded in self.decided if graded.has_answer}
+        return frozenset(graded.student for graded in self.decided) - answered
 
     def distribution(self, decisions: Decisions | None = None) -> Distribution:
         """Return the marks of those who handed something in or were present, by the scale with these
@@ -433,6 +439,7 @@ class Exam:
         )
         for sheet in alike_lines(lines):
             by_kind["alike"].setdefault(sheet.student, []).extend(map(self.shown, sheet.owners[:2]))
+        by_kind["blank"] = {student: [] for student in self._blank if student not in self.presence}
         return [
             SuspiciousPattern(
                 kind,

@@ -126,6 +126,21 @@ def test_what_is_confirmed_is_kept_if_nobody_reads_the_preview_and_json_is_json_
     assert [row["kind"] for row in table(folder / "decisions.csv")] == ["neutral", "withdrawn"]
 
 
+def test_students_who_answered_nothing_are_named_until_their_presence_is_stated(marked, small_course, capsys):
+    folder, after = marked
+    course = coursework.open_course(small_course)
+    papers = issue(folder.parent, [item(course, name, 5) for name in ("Ada", "Bo", "Cy")])
+    blank = [[*row[:-1], ""] for name in ("Bo", "Cy") for row in right(course, name, 5)]
+    for stated, named in ((None, ["Bo", "Cy"]), ("absent", ["Cy"]), ("present", ["Cy"])):
+        if stated:
+            (folder.parent / "attendance.csv").write_text(f"student,present\nBo,{stated}\n")
+        grade(course, papers, right(course, "Ada", 5) + blank)
+        assert [name for name, _ in said_by(capsys, after)["patterns"]["blank"]] == named
+        after()
+        (line,) = (line for line in capsys.readouterr().out.splitlines() if "Nothing answered" in line)
+        assert line.endswith(": " + ", ".join(named))
+
+
 def test_a_gradebook_of_points_is_told_that_the_total_was_scaled(marked, capsys):
     """A curve and points that are worth the best mark change marks alone; weights change points, too."""
     folder, after = marked
