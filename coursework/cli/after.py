@@ -175,11 +175,11 @@ def after(
         steps += exam.put_away(by, why or words(language_of_messages())["after"]["put_away_why"])
     undone = _undone(exam, undo, undo_since, put_away=put_away)
     steps += undoing(undone, by, why)
-    if put_away and not steps:
-        say("no answer that waits says nothing")
-        return DONE
-    if asked["refuse"] and not steps:
-        say("no answer waits in these questions")
+    if not steps and (put_away or asked["refuse"]):
+        if as_json:
+            print_json(_preview_json(exam.preview([])))
+        else:
+            say("no answer that waits says nothing" if put_away else "no answer waits in these questions")
         return DONE
     if not steps:
         if feedback:
@@ -197,7 +197,7 @@ def after(
     if as_json:
         print_json(_preview_json(preview))
         return DONE
-    _tell_preview(exam, steps, preview, undone)
+    _tell_preview(exam, steps, preview, undone, is_kept=yes)
     if not yes and sys.stdin.isatty() and click.confirm(localised(Message("Confirm?"))):
         confirm(steps, feedback)
         yes = True
@@ -480,7 +480,7 @@ def _question_row(question: Any, texts: Any, lang: str) -> dict[str, Any]:
 
 
 def _tell_preview(
-    exam: Exam, steps: Sequence[Decision], preview: Preview, undone: Sequence[Decision]
+    exam: Exam, steps: Sequence[Decision], preview: Preview, undone: Sequence[Decision], *, is_kept: bool
 ) -> None:
     """Print who goes from which mark to which, and the new mean and distribution."""
     from coursework.gradebook import after_words as said
@@ -488,7 +488,7 @@ def _tell_preview(
     lang = language_of_messages()
     texts, colon = words(lang)["after"], words(lang)["sheet"]["colon"]
     made = steps[: len(steps) - len(undone)]
-    _print(texts["preview"])
+    _print(texts["changes" if is_kept else "preview"])
     for _, text in said.batch_texts(exam, (step for step in made if not step.student), lang):
         _print(one_line(text))
     for line in reversed(step_lines(exam, (step for step in undone if not step.student), lang)):

@@ -122,8 +122,12 @@ def test_what_is_confirmed_is_kept_if_nobody_reads_the_preview_and_json_is_json_
     with os.fdopen(writer, "w") as closed:
         subprocess.run([*asked, folder.parent / "week3.toml", *confirmed], stdout=closed, check=False)
     assert [row["kind"] for row in table(folder / "decisions.csv")] == ["neutral"]
+    (folder / "feedback").mkdir()
     assert said_by(capsys, after, "--undo", "--yes")["changes"]
     assert [row["kind"] for row in table(folder / "decisions.csv")] == ["neutral", "withdrawn"]
+    assert after("--put-away", "--yes") == 0
+    for nothing in (["--put-away"], ["--refuse", "1.3"]):
+        assert said_by(capsys, after, *nothing)["changes"] == []
 
 
 def test_students_who_answered_nothing_are_named_until_their_presence_is_stated(marked, small_course, capsys):
@@ -137,7 +141,7 @@ def test_students_who_answered_nothing_are_named_until_their_presence_is_stated(
         grade(course, papers, right(course, "Ada", 5) + blank)
         assert [name for name, _ in said_by(capsys, after)["patterns"]["blank"]] == named
         after()
-        (line,) = (line for line in capsys.readouterr().out.splitlines() if "Nothing answered" in line)
+        (line,) = (line for line in capsys.readouterr().out.splitlines() if "Blank sheets" in line)
         assert line.endswith(": " + ", ".join(named))
 
 
