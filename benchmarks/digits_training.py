@@ -1,6 +1,7 @@
 """Training, calibration and proof of the net that reads digits: `coursework/scanning/digits.npz`.
 
     python benchmarks/digits_training.py --data FOLDER --work FOLDER draw
+    python benchmarks/digits_training.py --data FOLDER --work FOLDER clean
     python benchmarks/digits_training.py --data FOLDER --work FOLDER train
     python benchmarks/digits_training.py --data FOLDER --work FOLDER report
     python benchmarks/digits_training.py --data FOLDER --work FOLDER bank
@@ -19,7 +20,7 @@ from __future__ import annotations
 
 import argparse
 from collections import defaultdict
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor
 from pathlib import Path
 
@@ -37,14 +38,16 @@ from digits_drawing import (
     Pen,
     Scanner,
 )
-from handwriting import Digits, Paths, bitmaps, coarse, formulas, inked, mnist, paths, semeion
+from handwriting import Digits, Paths, bitmaps, coarse, formulas, inked, mnist, paths, semeion, unipen
 
-from coursework.scanning.digits import CONFIDENT, LAYERS, prepared, probabilities
+from coursework.scanning import digits as net
+from coursework.scanning.digits import CONFIDENT, LAYERS, prepared
 from coursework.scanning.numbers import framed
 
 WEIGHTS = Path(__file__).parents[1] / "coursework" / "scanning" / "digits.npz"
 BANK = Path(__file__).parents[1] / "tests" / "handwritten_digits.npz"
 CHUNK, PAGES, BATCH = 5_000, 60, 512
+PAGE = 45  #: boxes that a page has of one person
 APART = 50_000
 
 # ------------------------------------------------------------------- data
@@ -52,23 +55,30 @@ APART = 50_000
 
 def american(folder: Path, part: str) -> Digits:
     """MNIST's digits that ``train``, that calibrate (``check``), or of the ``test`` set."""
-    digits, labels = mnist(folder, "t10k" if part == "test" else "train")
+    digits, labels, _ = mnist(folder, "t10k" if part == "test" else "train")
     cut = {"train": slice(0, APART), "check": slice(APART, None), "test": slice(None)}[part]
-    return digits[cut], labels[cut]
+    return Digits(digits[cut], labels[cut])
 
 
-def turkish(folder: Path) -> list[tuple[float, Digits]]:
-    """UCI's writers who train, as paths, as bitmaps and as coarse ones, with their shares."""
+def pens_of(folder: Path) -> list[tuple[float, Digits]]:
+    """Writers with pens on tablets, and bitmaps of some of them, with their shares."""
     dots = bitmaps(folder, "tra")
-    return [(0.8, paths(folder, "tra")), (0.1, dots), (0.1, coarse(dots))]
+    return [(0.5, unipen(folder)), (0.36, paths(folder, "tra")), (0.07, dots), (0.07, coarse(dots))]
 
 
 #: Sets of careful boxes by writers whom the net has not seen.
 APART_HANDS = {
-    "turkish": lambda folder: paths(folder, "tes"),
+    "turkish": lambda folder: paths(folder, "tes 1"),
     "french": formulas,
     "bitmaps": lambda folder: bitmaps(folder, "windep"),
     "coarse": lambda folder: coarse(bitmaps(folder, "windep")),
+}
+
+#: Sets of which a chunk is the boxes of one writer whom the net has not seen; the first one calibrates.
+ONE_HAND = {
+    "hand": lambda folder: paths(folder, "tes 0"),
+    "turkish_hand": APART_HANDS["turkish"],
+    "french_hand": formulas,
 }
 
 
@@ -107,18 +117,21 @@ def drawn(job: tuple[str, int, Path, Path]) -> tuple[np.ndarray, np.ndarray]:
     if name == "pages":
         return of_pages(chunk, folder, work)
     rng = np.random.default_rng([sum(map(ord, name)), chunk])
+    if name in ONE_HAND:
+        seen, labels = of_writer(rng, chunk, ONE_HAND[name](folder), folder)
+        return np.round(seen * 255).astype(np.uint8), labels.astype(np.uint8)
     if name in ("careful", "pens", "hands", *APART_HANDS):
-        pen = Pen(rng, *american(folder, "train"))
+        pen = Pen(rng, *american(folder, "train")[:2])
         if name in APART_HANDS:
             careful = Careful(pen, [(1.0, APART_HANDS[name](folder))], Careful.DIGITS)
         elif name == "hands":
-            careful = Careful(pen, turkish(folder), (0.74, 0.04, 0.07, 0.05, 0.1))
+            careful = Careful(pen, pens_of(folder), (0.74, 0.04, 0.07, 0.05, 0.1))
         else:
             hands = [(0.8, american(folder, "train")), (0.2, semeion(folder))]
             careful = Careful(pen, hands, pens=float(name == "pens"))
         seen, labels = careful.batch(CHUNK)
         return np.round(seen * 255).astype(np.uint8), labels.astype(np.uint8)
-    pen = Pen(rng, *american(folder, name if name in ("train", "check", "test") else "test"))
+    pen = Pen(rng, *american(folder, name if name in ("train", "check", "test") else "test")[:2])
     scanner = Scanner(pen)
     make = {
         "european": lambda: european(scanner),
@@ -126,13 +139,13 @@ def drawn(job: tuple[str, int, Path, Path]) -> tuple[np.ndarray, np.ndarray]:
         "minus": lambda: (scanner.cell(pen.dash()), MINUS),
     }.get(name, scanner.labelled)
     if name == "test":
-        make = lambda: scanner.digit(*one_of(pen, pen.glyphs, pen.labels))  # noqa: E731
+        make = lambda: scanner.digit(*one_of(pen, Digits(pen.glyphs, pen.labels)))  # noqa: E731
     if name == "writers":
         others = APART_HANDS["coarse"](folder)
-        make = lambda: scanner.digit(*one_of(pen, *others))  # noqa: E731
+        make = lambda: scanner.digit(*one_of(pen, others))  # noqa: E731
     if name in ("scanned", "scanned_apart"):
-        strokes = paths(folder, "tra" if name == "scanned" else "tes")
-        make = lambda: scanner.digit(*one_of(pen, *strokes))  # noqa: E731
+        hands = [hand for _, hand in pens_of(folder)[:2]] if name == "scanned" else [paths(folder, "tes 1")]
+        make = lambda: scanner.digit(*one_of(pen, hands[rng.integers(len(hands))]))  # noqa: E731
     if name == "negatives":
         pen.letter = FontLetters(pen)
     samples = [make() for _ in range(CHUNK)]
@@ -141,6 +154,17 @@ def drawn(job: tuple[str, int, Path, Path]) -> tuple[np.ndarray, np.ndarray]:
         np.array([label for _, label in samples], np.uint8),
     )
     return np.round(prepared(cells) * 255).astype(np.uint8), labels
+
+
+def of_writer(
+    rng: np.random.Generator, chunk: int, everybody: Digits, folder: Path
+) -> tuple[np.ndarray, np.ndarray]:
+    """Careful boxes of one writer, each digit once, and a few minus signs and spoilt boxes among them."""
+    theirs = everybody.of(everybody.writers == np.unique(everybody.writers)[chunk])
+    careful = Careful(Pen(rng, *american(folder, "train")[:2]), [(1.0, theirs)], (0.91, 0, 0, 0.02, 0.07))
+    unused = iter(rng.permutation(len(theirs.labels)).tolist())
+    careful.chosen = lambda _: next(unused)
+    return careful.batch(4 * len(theirs.labels) // 5)
 
 
 def of_pages(chunk: int, folder: Path, work: Path) -> tuple[np.ndarray, np.ndarray]:
@@ -153,7 +177,7 @@ def of_pages(chunk: int, folder: Path, work: Path) -> tuple[np.ndarray, np.ndarr
     from coursework.scanning.straightening import NotStraight, straightened
     from coursework.scanning.strokes import cells, is_bare
 
-    bank = scans.simulated.handwriting(*american(folder, "check"))
+    bank = scans.simulated.handwriting(*american(folder, "check")[:2])
     kinds = list(scans.simulated.KINDS.values())
     sheets = [each for each in scans.sheets(work) if any(field.what == "number" for field in each[0].fields)]
     boxes, classes = [], []
@@ -196,9 +220,9 @@ def _noted(hand) -> dict:
     return digits
 
 
-def one_of(pen: Pen, glyphs: Sequence, labels: np.ndarray) -> tuple[np.ndarray, int]:
-    index = int(pen.rng.integers(len(labels)))
-    return pen.glyph(picture_of(glyphs[index], pen.rng)), int(labels[index])
+def one_of(pen: Pen, digits: Digits) -> tuple[np.ndarray, int]:
+    index = int(pen.rng.integers(len(digits.labels)))
+    return pen.glyph(picture_of(digits.pictures[index], pen.rng)), int(digits.labels[index])
 
 
 def picture_of(digit: np.ndarray | Paths, rng: np.random.Generator) -> np.ndarray:
@@ -212,7 +236,7 @@ def european(scanner: Scanner) -> tuple[np.ndarray, int]:
 
 
 #: Sets that train, and their shares of a batch.
-SHARES = {"careful": 0.3, "pens": 0.15, "train": 0.25, "hands": 0.22, "scanned": 0.08}
+SHARES = {"careful": 0.26, "pens": 0.12, "train": 0.22, "hands": 0.3, "scanned": 0.1}
 SETS = {
     "pages": 15,
     "check": 12,
@@ -223,6 +247,8 @@ SETS = {
     "minus": 1,
     "scanned_apart": 2,
     **dict.fromkeys(APART_HANDS, 2),
+    "turkish_hand": 7,
+    "french_hand": 39,
 }
 
 
@@ -233,6 +259,7 @@ def draw(options: argparse.Namespace) -> None:
         "train": options.chunks,
         "hands": options.hands,
         "scanned": options.hands // 3,
+        "hand": 7,
         **SETS,
     }
     jobs = [
@@ -245,15 +272,33 @@ def draw(options: argparse.Namespace) -> None:
             print(job[0], job[1], flush=True)
 
 
+def clean(options: argparse.Namespace) -> None:
+    """Leave out of the hands of pens the digits to whose labels the net of the package gives hardly a chance:
+    most of these labels are wrong, and would teach doubt."""
+    for path in sorted([*options.work.glob("hands_[0-9]*.npz"), *options.work.glob("scanned_[0-9]*.npz")]):
+        with np.load(path) as chunk:
+            seen, labels = chunk["seen"], chunk["labels"]
+        chances = net.probabilities(_features(seen))[np.arange(len(labels)), labels]
+        kept = (chances >= 0.05) | (labels >= BLANK)
+        np.savez(path, seen=seen[kept], labels=labels[kept])
+        print(path.name, len(labels) - kept.sum(), flush=True)
+
+
 def _file(options: argparse.Namespace, job: tuple) -> Path:
     return options.work / f"{job[0]}_{job[1]:03}.npz"
 
 
 def stored(options: argparse.Namespace, name: str) -> tuple[np.ndarray, np.ndarray]:
-    chunks = [np.load(path) for path in sorted(options.work.glob(f"{name}_*.npz"))]
-    seen, labels = (np.concatenate([chunk[what] for chunk in chunks]) for what in ("seen", "labels"))
-    kept = (labels != OTHER) | _shows(seen)
-    return seen[kept], labels[kept]
+    seen, labels = zip(*_chunks(options, name), strict=True)
+    return np.concatenate(seen), np.concatenate(labels)
+
+
+def _chunks(options: argparse.Namespace, name: str) -> Iterator[tuple[np.ndarray, np.ndarray]]:
+    for path in sorted(options.work.glob(f"{name}_[0-9]*.npz")):
+        with np.load(path) as chunk:
+            seen, labels = chunk["seen"], chunk["labels"]
+        kept = (labels != OTHER) | _shows(seen)
+        yield seen[kept], labels[kept]
 
 
 def _shows(seen: np.ndarray) -> np.ndarray:
@@ -326,6 +371,7 @@ class Careful:
         """``hands``: collections of digits, each with its share; ``pens``: the share of digits whose strokes
         are drawn anew, as thin as those of a pen."""
         self.pen, self.rng, self.shares, self.pens = pen, pen.rng, shares, pens
+        self.chosen = pen.rng.integers  #: one of so many digits
         self.often, self.hands = zip(*hands, strict=True)
 
     def batch(self, count: int) -> tuple[np.ndarray, np.ndarray]:
@@ -353,8 +399,8 @@ class Careful:
         return (cv2.resize(box, (56, 72), interpolation=cv2.INTER_AREA) * 255).astype(np.uint8)
 
     def _digit(self) -> tuple[np.ndarray, int]:
-        glyphs, labels = self.hands[self.rng.choice(len(self.hands), p=self.often)]
-        k = int(self.rng.integers(len(labels)))
+        glyphs, labels, _ = self.hands[self.rng.choice(len(self.hands), p=self.often)]
+        k = int(self.chosen(len(labels)))
         glyph = picture_of(glyphs[k], self.rng)
         if self.rng.random() < self.pens:
             glyph = self._small(self.pen.glyph(glyph))
@@ -506,44 +552,85 @@ def settle(options: argparse.Namespace) -> None:
     torch.save(net.state_dict(), kept)
 
 
-def export(net, temperature: float) -> None:
-    """The net as plain arrays of half precision, each batch normalisation put into its convolution."""
-    from coursework.scanning import digits
-
-    arrays = {"temperature": np.float32(temperature)}
-    for name, (convolution, normal) in net.convolutions.items():
+def export(trained, temperature: float, usual: np.ndarray | float = 0.0, hand: float = 0.0) -> None:
+    """The net as plain arrays of half precision, each batch normalisation put into its convolution; what of
+    a digit's features is ``usual``, and the weight of a person's own."""
+    arrays = {
+        "temperature": np.float32(temperature),
+        "usual": usual + np.zeros((10, 1), np.float32),
+        "hand": np.float32(hand),
+    }
+    for name, (convolution, normal) in trained.convolutions.items():
         scale = (normal.weight / (normal.running_var + normal.eps).sqrt()).detach()
         weight = convolution.weight.detach() * scale[:, None, None, None]
         arrays[f"{name}.weight"] = weight.permute(2, 3, 1, 0).reshape(-1, weight.shape[0]).numpy()
         arrays[f"{name}.bias"] = (normal.bias - normal.running_mean * scale).detach().numpy()
-    for name, layer in net.full.items():
+    for name, layer in trained.full.items():
         weight = layer.weight.detach()
         if name == "hidden":  # channels last
             weight = weight.reshape(len(weight), -1, 5, 4).permute(0, 2, 3, 1).reshape(len(weight), -1)
         arrays[f"{name}.weight"], arrays[f"{name}.bias"] = weight.T.numpy(), layer.bias.detach().numpy()
     np.savez_compressed(WEIGHTS, **{name: np.asarray(array, np.float16) for name, array in arrays.items()})
-    digits._weights.cache_clear()
+    net._weights.cache_clear()
 
 
 def calibrate(options: argparse.Namespace) -> None:
-    """The temperature at which the set that calibrates is likeliest."""
+    """The temperature at which the set that calibrates is likeliest; and, on pages of writers kept apart, the
+    weight of a person's own digits."""
     import torch
+
+    trained = network()
+    trained.load_state_dict(torch.load(options.work / "net.pt"))
+    export(trained, 1.0)
+    seen, labels = (array[::4] for array in stored(options, "check"))
+    logs = np.log(net.probabilities(_features(seen)) + 1e-300)
+    temperature = likeliest(lambda its: _unlikely(logs / its, labels), (0.2, 5))
+    usual = _usual(options)
+    export(trained, temperature, usual)
+    pages = [
+        (found, labels)
+        for seen, labels in _chunks(options, "hand")
+        for found, labels in pages_of(_features(seen), labels)
+    ]
+
+    def unlikely(hand: float) -> float:
+        net._weights()["hand"] = np.float32(hand)
+        costs = [_unlikely(np.log(net.of_one_hand(found) + 1e-300), labels) for found, labels in pages]
+        return float(np.mean(costs))
+
+    hand = likeliest(unlikely, (0, 60))
+    export(trained, temperature, usual, hand)
+    print("temperature", temperature, "hand", hand)
+
+
+def likeliest(cost, bounds: tuple[float, float]) -> float:
     from scipy.optimize import minimize_scalar
 
-    net = network()
-    net.load_state_dict(torch.load(options.work / "net.pt"))
-    export(net, 1.0)
-    seen, labels = (array[::4] for array in stored(options, "check"))
-    logs = np.log(probabilities(seen / np.float32(255)) + 1e-300)
+    return float(minimize_scalar(cost, bounds=bounds, method="bounded").x)
 
-    def unlikely(temperature: float) -> float:
-        scaled = logs / temperature
-        norm = np.logaddexp.reduce(scaled, axis=1)
-        return float((norm - scaled[np.arange(len(labels)), labels]).mean())
 
-    best = minimize_scalar(unlikely, bounds=(0.2, 5), method="bounded").x
-    export(net, best)
-    print("temperature", best)
+def _unlikely(logs: np.ndarray, labels: np.ndarray) -> float:
+    norm = np.logaddexp.reduce(logs, axis=1)
+    return float((norm - logs[np.arange(len(labels)), labels]).mean())
+
+
+def _features(seen: np.ndarray) -> np.ndarray:
+    return net.features(seen / np.float32(255))
+
+
+def _usual(options: argparse.Namespace) -> np.ndarray:
+    """The mean of the features of each digit, as rays, over boxes that trained."""
+    parts = [stored(options, name) for name in SHARES]
+    seen, labels = (np.concatenate([part[k][::60] for part in parts]) for k in (0, 1))
+    found = _features(seen)
+    rays = found / np.linalg.norm(found, axis=1, keepdims=True)
+    return np.array([rays[labels == digit].mean(axis=0) for digit in range(10)])
+
+
+def pages_of(found: np.ndarray, labels: np.ndarray) -> list[tuple[np.ndarray, np.ndarray]]:
+    """The boxes of a writer, page by page."""
+    count = max(1, round(len(labels) / PAGE))
+    return list(zip(np.array_split(found, count), np.array_split(labels, count), strict=True))
 
 
 # ------------------------------------------------------------------- the proof
@@ -559,8 +646,12 @@ def report(options: argparse.Namespace) -> None:
 
 
 def _chances(name: str, options: argparse.Namespace) -> tuple[np.ndarray, np.ndarray]:
-    seen, labels = stored(options, name)
-    return probabilities(seen / np.float32(255)), labels
+    if name not in ONE_HAND:
+        seen, labels = stored(options, name)
+        return net.probabilities(_features(seen)), labels
+    pages = [page for seen, labels in _chunks(options, name) for page in pages_of(_features(seen), labels)]
+    chances = [net.of_one_hand(found) for found, _ in pages]
+    return np.concatenate(chances), np.concatenate([labels for _, labels in pages])
 
 
 def _row(chances: np.ndarray, labels: np.ndarray) -> list[str]:
@@ -589,20 +680,30 @@ def limits(chances: np.ndarray, labels: np.ndarray) -> None:
 
 def bank(options: argparse.Namespace) -> None:
     """Digits for the tests, of writers whom the net has not seen: of MNIST, ``digits`` (400, 28, 28) and
-    ``labels``; of UCI, written by pens, ``pens`` (200, 40, 40) and ``pen_labels``."""
-    digits, labels = american(options.data, "test")
-    chosen = _of_each(labels, 100, 140)
-    strokes, pen_labels = paths(options.data, "tes")
-    picked = _of_each(pen_labels, 100, 120)
-    rng = np.random.default_rng(1)
-    pens = [_centred(inked(strokes[k], 28, rng.uniform(2, 3.5))) for k in picked]
+    ``labels``; of four of UCI's, written by pens, ``pens`` (200, 40, 40), ``pen_labels`` and
+    ``pen_writers``."""
+    digits, labels, _ = american(options.data, "test")
+    chosen = _of_each(labels, slice(100, 140))
+    everybody, rng = paths(options.data, "tes 1"), np.random.default_rng(1)
+    pens, pen_labels, pen_writers = [], [], []
+    for writer in np.unique(everybody.writers)[:4]:
+        theirs, broad = everybody.of(everybody.writers == writer), rng.uniform(2, 3.5)
+        for k in _of_each(theirs.labels, slice(5)):
+            pens.append(_centred(inked(theirs.pictures[k], 28, broad)))
+            pen_labels.append(theirs.labels[k])
+            pen_writers.append(writer)
     np.savez_compressed(
-        BANK, digits=digits[chosen], labels=labels[chosen], pens=pens, pen_labels=pen_labels[picked]
+        BANK,
+        digits=digits[chosen],
+        labels=labels[chosen],
+        pens=pens,
+        pen_labels=pen_labels,
+        pen_writers=pen_writers,
     )
 
 
-def _of_each(labels: np.ndarray, first: int, end: int) -> np.ndarray:
-    return np.sort(np.concatenate([np.flatnonzero(labels == digit)[first:end] for digit in range(10)]))
+def _of_each(labels: np.ndarray, part: slice) -> np.ndarray:
+    return np.sort(np.concatenate([np.flatnonzero(labels == digit)[part] for digit in range(10)]))
 
 
 def _centred(picture: np.ndarray) -> np.ndarray:
@@ -618,7 +719,7 @@ if __name__ == "__main__":
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
-    parser.add_argument("step", choices=["draw", "train", "settle", "calibrate", "report", "bank"])
+    parser.add_argument("step", choices=["draw", "clean", "train", "settle", "calibrate", "report", "bank"])
     parser.add_argument("--data", type=Path, required=True)
     parser.add_argument("--work", type=Path, required=True)
     parser.add_argument("--careful", type=int, default=100, help="chunks of five thousand careful boxes")

@@ -1,21 +1,26 @@
 """Handwritten digits of public collections, read from one folder.
 
-- ``train-*-ubyte`` and ``t10k-*-ubyte``: MNIST, by 250 writers in the United States and 250 others.
+- ``train-*-ubyte`` and ``t10k-*-ubyte``: MNIST, by 539 writers in the United States and 297 others;
+  ``qmnist-test-labels-idx2-int.gz``, of QMNIST, states the writers of the latter.
 - ``semeion.data``: UCI's "Semeion Handwritten Digit", by 80 writers in Italy.
 - ``optdigits-orig.tra`` and ``.windep``: UCI's "Optical Recognition of Handwritten Digits", by 30 writers in
   Turkey and 13 others.
 - ``pendigits-orig.tra`` and ``.tes``: UCI's "Pen-Based Recognition of Handwritten Digits", by 30 writers in
   Turkey and 14 others.
+- ``unipen/``: the folders ``data/1a`` and ``include`` of UNIPEN's "train_r01_v07": isolated digits from 15
+  institutions in the United States, Germany, Spain, Britain and Canada.
 - ``inkml/``: formulas of the competitions CROHME; those of HAMEX are by 39 writers in France.
 
-Pictures are white on black. The last two are paths of pens on tablets, which are drawn with any pen.
+Pictures are white on black. The last three are paths of pens on tablets, which are drawn with any pen.
 """
 
 from __future__ import annotations
 
+import gzip
 import re
 from collections.abc import Iterator, Sequence
 from pathlib import Path
+from typing import NamedTuple
 from xml.etree import ElementTree
 
 import cv2
@@ -23,19 +28,35 @@ import numpy as np
 
 #: The strokes of a digit, each (n, 2), the second coordinate downwards.
 Paths = list[np.ndarray]
-#: Digits, as pictures or as paths, and what they are.
-Digits = tuple[Sequence[np.ndarray] | Sequence[Paths], np.ndarray]
+
+
+class Digits(NamedTuple):
+    """Digits as pictures or as paths, what they are, and by whom, where that is known."""
+
+    pictures: Sequence[np.ndarray] | Sequence[Paths]
+    labels: np.ndarray
+    writers: np.ndarray | None = None
+
+    def of(self, chosen: np.ndarray) -> Digits:
+        """Return some of the digits, by a mask."""
+        writers = None if self.writers is None else self.writers[chosen]
+        pictures = [self.pictures[k] for k in np.flatnonzero(chosen)]
+        return Digits(pictures, self.labels[chosen], writers)
 
 
 def mnist(folder: Path, part: str) -> Digits:
-    """Return MNIST's digits, 28 by 28; ``part`` is ``train`` or ``t10k``."""
-    return _idx(folder / f"{part}-images-idx3-ubyte"), _idx(folder / f"{part}-labels-idx1-ubyte")
+    """Return MNIST's digits, 28 by 28; ``part`` is ``train`` or ``t10k``, of which the writers are known."""
+    pictures, labels = (_idx(folder / f"{part}-{what}-ubyte") for what in ("images-idx3", "labels-idx1"))
+    if part == "train":
+        return Digits(pictures, labels)
+    about = _idx(folder / "qmnist-test-labels-idx2-int.gz")[: len(labels)]
+    return Digits(pictures, labels, about[:, 2])
 
 
 def _idx(path: Path) -> np.ndarray:
-    raw = path.read_bytes()
+    raw = (gzip.open if path.suffix == ".gz" else open)(path, "rb").read()
     shape = np.frombuffer(raw, ">i4", raw[3], 4)
-    return np.frombuffer(raw, np.uint8, -1, 4 + 4 * raw[3]).reshape(shape)
+    return np.frombuffer(raw, {8: np.uint8, 12: ">i4"}[raw[2]], -1, 4 + 4 * raw[3]).reshape(shape)
 
 
 def semeion(folder: Path) -> Digits:
@@ -44,7 +65,11 @@ def semeion(folder: Path) -> Digits:
     rows = np.array([[float(v) for v in line.split()[:266]] for line in lines])
     small = np.pad(255 * rows[:, :256].reshape(-1, 16, 16), ((0, 0), (2, 2), (2, 2))).astype(np.float32)
     large = [cv2.GaussianBlur(cv2.resize(one, (28, 28)), (0, 0), 0.5) for one in small]
-    return np.array(large).astype(np.uint8), rows[:, 256:].argmax(1)
+    return Digits(np.array(large).astype(np.uint8), rows[:, 256:].argmax(1))
+
+
+#: The first digits of UCI's form, which every writer filled in.
+_FORM = r"(?:0123456789){2,}"
 
 
 def bitmaps(folder: Path, part: str) -> Digits:
@@ -53,27 +78,75 @@ def bitmaps(folder: Path, part: str) -> Digits:
     lines = [line.strip() for line in (folder / f"optdigits-orig.{part}").read_text("ascii").splitlines()]
     first = [k for k, line in enumerate(lines) if len(line) == 32 and set(line) <= {"0", "1"}][::32]
     digits = [[[255 * int(dot) for dot in row] for row in lines[k : k + 32]] for k in first]
-    return np.array(digits, np.uint8), np.array([int(lines[k + 32]) for k in first])
+    labels = "".join(lines[k + 32] for k in first)
+    begun = np.isin(np.arange(len(labels)), [found.start() for found in re.finditer(_FORM, labels)])
+    return Digits(np.array(digits, np.uint8), np.array([*map(int, labels)]), np.cumsum(begun))
 
 
 def coarse(digits: Digits) -> Digits:
     """Return digits of 32 by 32 dots as UCI and scikit-learn publish them, 8 by 8 of 17 greys, enlarged."""
-    pictures, labels = digits
-    greys = np.asarray(pictures, np.float32).reshape(-1, 8, 4, 8, 4).mean((2, 4))
+    greys = np.asarray(digits.pictures, np.float32).reshape(-1, 8, 4, 8, 4).mean((2, 4))
     large = [cv2.resize(each, (24, 24), interpolation=cv2.INTER_CUBIC) for each in greys]
-    return np.clip(np.pad(large, ((0, 0), (2, 2), (2, 2))), 0, 255).astype(np.uint8), labels
+    return digits._replace(pictures=np.clip(np.pad(large, ((0, 0), (2, 2), (2, 2))), 0, 255).astype(np.uint8))
 
 
 def paths(folder: Path, part: str) -> Digits:
-    """Return UCI's digits as paths (UNIPEN); ``part`` is ``tra`` or ``tes``, of other writers."""
+    """Return UCI's digits as paths (UNIPEN); ``part`` is ``tra`` or ``tes``, of 14 other writers: ``tes 1``
+    is of those with odd numbers, ``tes 0`` of those with even ones."""
+    part, _, odd = part.partition(" ")
     found = []
     for segment in (folder / f"pendigits-orig.{part}").read_text("ascii").split(".SEGMENT DIGIT")[1:]:
-        label = re.search(r'"(\d)"', segment)
+        label, about = re.search(r'"(\d)"', segment), re.search(r"\.COMMENT\s+\d+\s+(\d+)", segment)
         down = [each.partition(".PEN_UP")[0] for each in segment.split(".PEN_DOWN")[1:]]
         strokes = [np.array(each.split(), float).reshape(-1, 2) * (1, -1) for each in down]
-        if label and any(len(each) > 1 for each in strokes):
-            found.append((int(label[1]), [each for each in strokes if len(each)]))
-    return [each for _, each in found], np.array([label for label, _ in found])
+        if label and about and any(len(each) > 1 for each in strokes):
+            found.append(([each for each in strokes if len(each)], int(label[1]), int(about[1])))
+    digits = _digits(found)
+    return digits.of(digits.writers % 2 == int(odd)) if odd else digits
+
+
+def _digits(found: Sequence[tuple[Paths, int, int | str]]) -> Digits:
+    pictures, labels, writers = zip(*found, strict=True)
+    return Digits(pictures, np.array(labels), np.array(writers))
+
+
+_DOWN = re.compile(r"^\.PEN_DOWN", re.MULTILINE)
+
+
+def unipen(folder: Path) -> Digits:
+    """Return UNIPEN's isolated digits as paths: files that name strokes of other files by their numbers."""
+    found: list[tuple[int, Paths]] = []
+    for path in sorted((folder / "unipen" / "data" / "1a").rglob("*.dat")):
+        if "tos" in path.parts:  # its numbers are not those of its strokes
+            continue
+        text = path.read_text("latin-1")
+        included = re.findall(r"^\.INCLUDE\s+(\S+)", text, re.MULTILINE)
+        down = [
+            stroke
+            for name in included
+            for stroke in _DOWN.split((folder / "unipen" / "include" / name).read_text("latin-1"))[1:]
+        ]
+        for places, label in re.findall(
+            r'^\.SEGMENT CHARACTER\s+([\d,-]+)\s+\S+\s+"(\d)"', text, re.MULTILINE
+        ):
+            strokes = [_points(down[k]) for k in _numbers(places) if k < len(down)]
+            if strokes and sum(map(len, strokes)) > 3:
+                found.append((int(label), [each for each in strokes if len(each)]))
+    return Digits([each for _, each in found], np.array([label for label, _ in found]))
+
+
+def _numbers(text: str) -> Iterator[int]:
+    """Yield the numbers of a list such as ``3,5-7``."""
+    for piece in filter(None, text.split(",")):
+        first, _, last = piece.partition("-")
+        yield from range(int(first), int(last or first) + 1)
+
+
+def _points(text: str) -> np.ndarray:
+    """Return the points that begin a text of UNIPEN, up to its next keyword."""
+    rows = [line.split() for line in text.partition("\n.")[0].splitlines()]
+    points = [(float(row[0]), -float(row[1])) for row in rows if len(row) >= 2]
+    return np.array(points).reshape(-1, 2)
 
 
 _INK = "{http://www.w3.org/2003/InkML}"
@@ -81,11 +154,10 @@ _INK = "{http://www.w3.org/2003/InkML}"
 
 def formulas(folder: Path) -> Digits:
     """Return the digits in the formulas of ``inkml/`` as paths."""
-    found = [each for path in sorted(folder.glob("inkml/*.inkml")) for each in _of_formula(path)]
-    return [each for _, each in found], np.array([label for label, _ in found])
+    return _digits([each for path in sorted(folder.glob("inkml/*.inkml")) for each in _of_formula(path)])
 
 
-def _of_formula(path: Path) -> Iterator[tuple[int, Paths]]:
+def _of_formula(path: Path) -> Iterator[tuple[Paths, int, str]]:
     try:
         root = ElementTree.parse(path).getroot()
     except ElementTree.ParseError:  # a few files are not XML
@@ -95,11 +167,13 @@ def _of_formula(path: Path) -> Iterator[tuple[int, Paths]]:
         for trace in root.findall(f"{_INK}trace")
         if trace.text and trace.text.strip()
     }
+    about = {each.get("type"): each.text or "" for each in root.findall(f"{_INK}annotation")}
+    writer = about.get("writer", path.stem)
     for group in root.iter(f"{_INK}traceGroup"):
         sign, parts = group.findtext(f"{_INK}annotation", ""), group.findall(f"{_INK}traceView")
         drawn = [strokes[each.get("traceDataRef")] for each in parts if each.get("traceDataRef") in strokes]
         if drawn and len(sign) == 1 and sign in "0123456789":
-            yield int(sign), drawn
+            yield drawn, int(sign), writer
 
 
 def inked(strokes: Paths, high: float, width: float) -> np.ndarray:

@@ -8,9 +8,9 @@ python benchmarks/scans.py FOLDER wrong            # what was read wrong
 
 Two thirds of the answers are right ones of a variant, rounded; of the wrong ones most are near a right one: a
 digit changed or exchanged, another sign, a point elsewhere, a few per cent too many. FOLDER keeps the printed
-sheets and a line a page, ``read.jsonl``. Every thirty pages are by other writers, of collections that
-`handwriting.py` lists and reads from FOLDER; nothing was trained with them. Where none is there, they are 400
-of MNIST's test set from the tests.
+sheets and a line a page, ``read.jsonl``. Every page is by one writer, every thirty by those of another of the
+collections that `handwriting.py` lists and reads from FOLDER; nothing was trained with them. Where none is
+there, they are 400 of MNIST's test set from the tests, of whom no page has one alone.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ TESTS = Path(__file__).parents[1] / "tests"
 sys.path.insert(0, str(TESTS))
 
 import scanned_pages as simulated  # noqa: E402
-from handwriting import bitmaps, formulas, inked, mnist, paths  # noqa: E402
+from handwriting import Digits, bitmaps, formulas, inked, mnist, paths  # noqa: E402
 
 from coursework import open_course  # noqa: E402
 from coursework.marking.marking import is_right_alone  # noqa: E402
@@ -81,7 +81,7 @@ def sheets(folder: Path) -> list[tuple[AnswerPage, Path]]:
 #: Writers whom no training saw, and how their digits are read.
 HANDS = {
     "American": lambda folder: mnist(folder, "t10k"),
-    "Turkish": lambda folder: paths(folder, "tes"),
+    "Turkish": lambda folder: paths(folder, "tes 1"),
     "French": formulas,
     "Turkish, stretched": lambda folder: bitmaps(folder, "windep"),
 }
@@ -92,20 +92,32 @@ def hand_of(index: int) -> str:
 
 
 @cache
-def bank(folder: Path, hand: str) -> simulated.Bank:
+def collection(folder: Path, hand: str) -> Digits:
     if not (folder / "t10k-images-idx3-ubyte").exists():
         with np.load(TESTS / "handwritten_digits.npz") as kept:
-            return simulated.handwriting(kept["digits"], kept["labels"])
-    digits, labels = HANDS[hand](folder)
-    if isinstance(digits, np.ndarray):
-        return simulated.handwriting(digits, labels)
+            return Digits(kept["digits"], kept["labels"])
+    return HANDS[hand](folder)
+
+
+def bank(folder: Path, hand: str, rng: np.random.Generator) -> simulated.Bank:
+    """Return the digits of one writer of a collection. Where the writer has no more, others' come, and none
+    twice, since a digit that somebody writes again does not look the same."""
+    digits = collection(folder, hand)
+    writer = rng.choice(np.unique(digits.writers)) if digits.writers is not None else None
+    order = rng.permutation(len(digits.labels))
+    if writer is not None:
+        order = order[np.argsort(digits.writers[order] != writer, kind="stable")]
+    left = {digit: iter(order[digits.labels[order] == digit].tolist()) for digit in range(10)}
 
     def drawn(digit: int, rng: np.random.Generator) -> np.ndarray:
-        strokes = digits[rng.choice(np.flatnonzero(labels == digit))]
-        picture = inked(strokes, 110, rng.uniform(5, 11)) / 255
-        rows, columns = np.flatnonzero(picture.max(1) > 0.2), np.flatnonzero(picture.max(0) > 0.2)
-        return picture[rows[0] : rows[-1] + 1, columns[0] : columns[-1] + 1]
+        picture = digits.pictures[next(left[digit])]
+        if isinstance(picture, np.ndarray):
+            return simulated.handwriting(picture[None], np.array([digit]))(digit, rng)
+        ink = inked(picture, 110, broad) / 255
+        rows, columns = np.flatnonzero(ink.max(1) > 0.2), np.flatnonzero(ink.max(0) > 0.2)
+        return ink[rows[0] : rows[-1] + 1, columns[0] : columns[-1] + 1]
 
+    broad = rng.uniform(5, 11)
     return drawn
 
 
@@ -203,7 +215,7 @@ def one(folder: Path, index: int, page: AnswerPage, file: str, only: str = "") -
     rng = np.random.default_rng([23, index])
     kind = only or list(simulated.KINDS)[index // 2 % len(simulated.KINDS)]
     student = Student(page, np.random.default_rng([29, index]))
-    hand = simulated.a_hand(rng, bank(folder, hand_of(index)))
+    hand = simulated.a_hand(rng, bank(folder, hand_of(index), np.random.default_rng([37, index])))
     hand.answers = student.answer
     filled, wrote = simulated.filled_in(printed(file), page, hand, odd=0.1)
     scan = simulated.KINDS[kind](rng)

@@ -44,6 +44,8 @@ def read_digits(
 ) -> tuple[NDArray[np.int64], NDArray[np.float64], NDArray[np.float64]]:
     """Return the digit in each box, ``EMPTY`` for none, its confidence, and the probability of each digit.
 
+    The boxes are those of one person, and help to read each other.
+
     Parameters
     ----------
     cells
@@ -59,7 +61,7 @@ def read_digits(
     chances
         The probability of each digit from 0 to 9, shape ``(n, 10)``.
     """
-    chances = probabilities(prepared(cells))
+    chances = of_one_hand(features(prepared(cells)))
     likeliest = chances[:, : BLANK + 1].argmax(axis=1)
     confidences = chances[np.arange(len(likeliest)), likeliest]
     return np.where(likeliest == BLANK, EMPTY, likeliest), confidences, chances[:, :BLANK]
@@ -74,10 +76,31 @@ def prepared(cells: NDArray[np.uint8]) -> Floats:
     return seen
 
 
-def probabilities(seen: Floats) -> NDArray[np.float64]:
-    """Return calibrated probabilities of the classes, shape (n, 13), for prepared boxes."""
-    batches = [_softmax(_logits(seen[k : k + BATCH])) for k in range(0, len(seen), BATCH)]
-    return np.concatenate(batches) if batches else np.zeros((0, OTHER + 1))
+def probabilities(found: Floats) -> NDArray[np.float64]:
+    """Return calibrated probabilities of the classes, shape (n, 13), for features of boxes, each alone."""
+    return _softmax(_logits(found))
+
+
+def of_one_hand(found: Floats) -> NDArray[np.float64]:
+    """Return calibrated probabilities of the classes, shape (n, 13), for features of boxes of one person."""
+    logits = _logits(found)
+    logits[:, :BLANK] += _weights()["hand"] * nearness(found, probabilities(found)[:, :BLANK])
+    return _softmax(logits)
+
+
+def nearness(found: Floats, chances: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return how much nearer each box is to the same person's other boxes of a digit than to everybody's,
+    shape (n, 10).
+
+    Nearness is the cosine between the features of a box and a prototype. That of the person is the mean of
+    the other boxes, weighted by the ``chances``, (n, 10), that they show the digit; it counts for less the
+    fewer they are.
+    """
+    rays = found / np.maximum(np.linalg.norm(found, axis=1, keepdims=True), 1e-6)
+    others = chances.sum(axis=0) - chances
+    own = rays @ (chances.T @ rays).T - chances * (rays**2).sum(axis=1, keepdims=True)
+    near: NDArray[np.float64] = (own - others * (rays @ _weights()["usual"].T)) / (others + 1)
+    return near
 
 
 def _resized(cell: NDArray[np.uint8]) -> Floats:
@@ -105,8 +128,14 @@ def _weights() -> dict[str, Floats]:
         return {name: stored[name].astype(np.float32) for name in stored.files}
 
 
-def _logits(seen: Floats) -> Floats:
-    """Convolutions, single and in residual pairs, and two full layers."""
+def features(seen: Floats) -> Floats:
+    """Return the values of the last hidden layer, shape (n, 96), for prepared boxes."""
+    batches = [_features(seen[k : k + BATCH]) for k in range(0, len(seen), BATCH)]
+    return np.concatenate(batches) if batches else np.zeros((0, _weights()["hidden.bias"].size), np.float32)
+
+
+def _features(seen: Floats) -> Floats:
+    """Convolutions, single and in residual pairs, and a full layer."""
     w = _weights()
     flow = seen[..., None]
     for step in LAYERS:
@@ -115,8 +144,13 @@ def _logits(seen: Floats) -> Floats:
         else:
             first, second = step
             flow = np.maximum(flow + _layer(_rectified(flow, first), second), 0)
-    hidden = np.maximum(flow.reshape(len(flow), -1) @ w["hidden.weight"] + w["hidden.bias"], 0)
-    logits: Floats = (hidden @ w["classes.weight"] + w["classes.bias"]) / w["temperature"]
+    hidden: Floats = np.maximum(flow.reshape(len(flow), -1) @ w["hidden.weight"] + w["hidden.bias"], 0)
+    return hidden
+
+
+def _logits(found: Floats) -> Floats:
+    w = _weights()
+    logits: Floats = (found @ w["classes.weight"] + w["classes.bias"]) / w["temperature"]
     return logits
 
 

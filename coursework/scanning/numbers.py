@@ -15,8 +15,9 @@ The rules, for a row that is not empty:
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from itertools import chain
 
 import numpy as np
 
@@ -35,8 +36,8 @@ from coursework.scanning.strokes import (
 from coursework.scanning.ticks import EMPTY, TICKED, UNSURE, tick
 from coursework.sheets.answer_pages import AnswerField, Box
 
-#: Pictures of boxes ``(n, h, w)``, dark ink on light, to digits, -1 for an empty one, the confidence in each,
-#: and if the reader can tell, the probability of each digit from 0 to 9, ``(n, 10)``.
+#: Pictures of boxes of one person ``(n, h, w)``, dark ink on light, to digits, -1 for an empty one, the
+#: confidence in each, and if the reader can tell, the probability of each digit from 0 to 9, ``(n, 10)``.
 Reader = Callable[[np.ndarray], tuple[np.ndarray, ...]]
 
 LEAST = CONFIDENT  #: the confidence in a box below which a person reads it
@@ -86,22 +87,47 @@ class _Row:
     unit: str
 
 
-def number(page: Straight, field: AnswerField, reader: Reader, least: float = LEAST) -> FieldText:
-    """Return the reading of a field for a number."""
+@dataclass(frozen=True)
+class _Ink:
+    """What the boxes of a field show before their digits are read: those that are ``bare``, the tick of the
+    unit, a picture of each box for a digit, and the reason for which a person reads them, if any."""
+
+    field: AnswerField
+    bare: dict[Box, bool]
+    unit: str
+    pictures: dict[Box, np.ndarray]
+    waits: str = ""
+
+
+def numbers(
+    page: Straight, fields: Iterable[AnswerField], reader: Reader, least: float = LEAST
+) -> list[FieldText]:
+    """Return the readings of the fields for numbers of a page.
+
+    The reader is handed the boxes of all of them at once, since one person wrote them.
+    """
+    inks = [_ink(page, field) for field in fields]
+    boxes = _digits(inks, reader)
+    return [_number(page, ink, boxes, least) for ink in inks]
+
+
+def _ink(page: Straight, field: AnswerField) -> _Ink:
+    """Return what the boxes of a field show; no pictures if there are no digits to read."""
     if field.free is not None and not is_bare(page, field.free, 0.7):
-        return FieldText("", 0.0, "free")
-    boxes = [*field.digits, *field.decimals]
-    everywhere = [b for b in (field.sign, *boxes, field.power_sign, *field.power) if b is not None]
+        return _Ink(field, {}, EMPTY, {}, "free")
+    rows = ([*field.digits, *field.decimals], list(field.power))
+    signs = tuple(box for box in (field.sign, field.power_sign) if box is not None)
+    bare = {box: _is_bare(page, box, _DASH if box in signs else _UPRIGHT) for box in (*signs, *chain(*rows))}
     unit = tick(page, field.unit) if field.unit is not None else EMPTY
-    signs = (field.sign, field.power_sign)
-    bare = {box: _is_bare(page, box, _DASH if box in signs else _UPRIGHT) for box in everywhere}
     if all(bare.values()):
-        read = FieldText("", 1.0, "" if unit in (EMPTY, TICKED) else "unit")
-    else:
-        read = _written(page, field, reader, least, bare, unit)
-    if read.waits not in ("", "doubted") or not written_beside(page, field):
-        return read
-    return replace(read, waits="free", candidates=())
+        return _Ink(field, bare, unit, {})
+    waits = "digit" if any(runs_through(page, box) for box, empty in bare.items() if not empty) else ""
+    pictures: dict[Box, np.ndarray] = {}
+    for row in filter(None, rows):
+        views, fault = cells(page, row)
+        waits = waits or fault
+        pictures |= zip(row, views, strict=True)
+    return _Ink(field, bare, unit, pictures, waits)
 
 
 def _is_bare(page: Straight, box: Box, stroke: float) -> bool:
@@ -110,33 +136,60 @@ def _is_bare(page: Straight, box: Box, stroke: float) -> bool:
     return is_bare(page, box) and not has_stroke(page, box, stroke)
 
 
-def _written(
-    page: Straight, field: AnswerField, reader: Reader, least: float, bare: dict[Box, bool], unit: str
-) -> FieldText:
+def _digits(inks: Iterable[_Ink], reader: Reader) -> dict[Box, _ReadNumber]:
+    """Return each box that is not bare as read; what is no digit is read with no confidence."""
+    pictures = {box: picture for ink in inks for box, picture in ink.pictures.items() if not ink.bare[box]}
+    if not pictures:
+        return {}
+    read, sure, *chances = reader(np.stack([framed(picture) for picture in pictures.values()]))
+    found = {}
+    for place, box in enumerate(pictures):
+        digit, confidence = int(read[place]), float(sure[place])
+        possible = list(enumerate(chances[0][place].tolist())) if chances else [(digit, confidence)]
+        found[box] = _ReadNumber(
+            digit,
+            confidence if digit >= 0 else 0.0,
+            tuple(each for each in possible if each[1] >= _POSSIBLE) if digit >= 0 else (),
+        )
+    return found
+
+
+def _number(page: Straight, ink: _Ink, boxes: Mapping[Box, _ReadNumber], least: float) -> FieldText:
+    """Return the reading of a field, given the boxes of the page as read."""
+    if ink.waits == "free":
+        return FieldText("", 0.0, "free")
+    if all(ink.bare.values()):
+        read = FieldText("", 1.0, "" if ink.unit in (EMPTY, TICKED) else "unit")
+    else:
+        own = {box: boxes.get(box, _ReadNumber()) for box in ink.pictures}
+        read = _written(page, ink, own, least)
+    if read.waits not in ("", "doubted") or not written_beside(page, ink.field):
+        return read
+    return replace(read, waits="free", candidates=())
+
+
+def _written(page: Straight, ink: _Ink, boxes: Mapping[Box, _ReadNumber], least: float) -> FieldText:
     """Return the reading of a row that is not empty."""
-    rows = [[*field.digits, *field.decimals], list(field.power)]
-    boxes: dict[Box, _ReadNumber] = {}
-    reason = "digit" if any(runs_through(page, box) for box, empty in bare.items() if not empty) else ""
-    has_bar = False
-    for row in rows:
-        if row:
-            pictures, across = cells(page, row)
-            read = _digits(pictures, [bare[b] for b in row], reader)
-            reason = reason or across
-            has_bar = has_bar or _has_bar(pictures, [one.digit for one in read])
-            boxes |= zip(row, read, strict=True)
+    field = ink.field
+    has_bar = any(
+        _has_bar([ink.pictures[box] for box in row], [boxes[box].digit for box in row])
+        for row in ((*field.digits, *field.decimals), field.power)
+    )
+    reason = ink.waits
     if not reason and any(
-        one.digit in _LIKE_EDGES and cuts_a_corner(page, box) for box, one in boxes.items() if not bare[box]
+        one.digit in _LIKE_EDGES and cuts_a_corner(page, box)
+        for box, one in boxes.items()
+        if not ink.bare[box]
     ):
         reason = "digit"
-    signs = [_sign(page, box, bare) for box in (field.sign, field.power_sign)]
-    row_read = _row([one.digit for one in boxes.values()], field, (signs[0], signs[1]), unit)
+    signs = (_sign(page, field.sign, ink.bare), _sign(page, field.power_sign, ink.bare))
+    row_read = _row([one.digit for one in boxes.values()], field, signs, ink.unit)
     confidence = min((one.confidence for one in boxes.values()), default=1.0)
     reason = reason or _against_rules(row_read)
     if reason or (confidence >= least and not has_bar):
         return FieldText(_text(row_read, field.unit_text), confidence, reason)
     candidates = tuple(
-        (_text(_row(digits, field, (signs[0], signs[1]), unit), field.unit_text), chance)
+        (_text(_row(digits, field, signs, ink.unit), field.unit_text), chance)
         for digits, chance in _likeliest([one.possible for one in boxes.values()])
     )
     if sum(chance for _, chance in candidates) < LIKELY:
@@ -158,23 +211,6 @@ def _likeliest(
     for one in possible:
         longer = [((*digits, digit), before * chance) for digits, before in found for digit, chance in one]
         found = sorted(longer, key=lambda each: -each[1])[:_CANDIDATES]
-    return found
-
-
-def _digits(pictures: Sequence[np.ndarray], bare: Sequence[bool], reader: Reader) -> list[_ReadNumber]:
-    """Return each box as read; what is neither bare nor a digit is read with no confidence."""
-    found = [_ReadNumber()] * len(bare)
-    inked = [k for k, empty in enumerate(bare) if not empty]
-    if inked:
-        read, sure, *chances = reader(np.stack([framed(pictures[k]) for k in inked]))
-        for place, k in enumerate(inked):
-            digit, confidence = int(read[place]), float(sure[place])
-            possible = list(enumerate(chances[0][place].tolist())) if chances else [(digit, confidence)]
-            found[k] = _ReadNumber(
-                digit,
-                confidence if digit >= 0 else 0.0,
-                tuple(each for each in possible if each[1] >= _POSSIBLE) if digit >= 0 else (),
-            )
     return found
 
 
@@ -262,4 +298,4 @@ def _text(row: _Row, unit: str) -> str:
     return f"{row.sign}{joined(row.digits)}{decimals}{power}{suffix}".replace("?", "")
 
 
-__all__ = ["LEAST", "UNSURE", "FieldText", "Reader", "number"]
+__all__ = ["LEAST", "UNSURE", "FieldText", "Reader", "numbers"]

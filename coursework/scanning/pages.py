@@ -11,7 +11,7 @@ import numpy as np
 
 from coursework.scanning.beside import written_below, written_beside
 from coursework.scanning.codes import PageCode, codes_in
-from coursework.scanning.numbers import LEAST, FieldText, Reader, number
+from coursework.scanning.numbers import LEAST, FieldText, Reader, numbers
 from coursework.scanning.outlines import span_of
 from coursework.scanning.pictures import PageImage, is_two_toned, opencv, without_streaks
 from coursework.scanning.straightening import NotStraight, Straight, straightened
@@ -104,7 +104,7 @@ def _of_ours(
         return page_read("not straight", page)
     if is_two_toned(picture.grey):
         least = 1 - (1 - least) / _SURER
-    fields = tuple(read_field(flat, field, reader, least) for field in page.fields)
+    fields = read_fields(flat, page.fields, reader, least)
     if any(_is_blank(item) for item in fields) and written_below(flat, page):
         fields = tuple(_gone_astray(flat, item) if _is_blank(item) else item for item in fields)
     return PageRead(picture.file, picture.page, "answers", flat.paper, code.text, page, fields)
@@ -119,16 +119,27 @@ def _gone_astray(page: Straight, field: FieldRead) -> FieldRead:
     return replace(field, confidence=0.0, waits="elsewhere", crop=cropped(page, field.field))
 
 
-def read_field(page: Straight, field: AnswerField, reader: Reader, least: float = LEAST) -> FieldRead:
-    """Return the reading of a field on a flattened page."""
+def read_fields(
+    page: Straight, fields: Sequence[AnswerField], reader: Reader, least: float = LEAST
+) -> tuple[FieldRead, ...]:
+    """Return the readings of the fields on a flattened page."""
+    read = iter(numbers(page, [field for field in fields if field.what == "number"], reader, least))
+    return tuple(
+        _field_read(page, field, next(read) if field.what == "number" else _mark(page, field))
+        for field in fields
+    )
+
+
+def _field_read(page: Straight, field: AnswerField, read: FieldText) -> FieldRead:
+    crop = cropped(page, field) if read.waits else None
+    return FieldRead(field, read.text, read.confidence, read.waits, read.cases, crop, read.candidates)
+
+
+def _mark(page: Straight, field: AnswerField) -> FieldText:
+    """Return the reading of ticks, or whether something is written or drawn that a person reads."""
     if field.what == "ticks":
-        ticks = _ticks(page, field)
-    elif field.what == "number":
-        ticks = number(page, field, reader, least)
-    else:
-        ticks = FieldText("", waits="" if is_bare(page, field.whole, 1.2) else field.what)
-    crop = cropped(page, field) if ticks.waits else None
-    return FieldRead(field, ticks.text, ticks.confidence, ticks.waits, ticks.cases, crop, ticks.candidates)
+        return _ticks(page, field)
+    return FieldText("", waits="" if is_bare(page, field.whole, 1.2) else field.what)
 
 
 def _ticks(page: Straight, field: AnswerField) -> FieldText:
@@ -157,4 +168,4 @@ def encoded(crop: np.ndarray) -> bytes:
     return bytes(cv2.imencode(".png", crop)[1])
 
 
-__all__ = ["FOUND", "WAITS", "FieldRead", "PageRead", "cropped", "encoded", "read_field", "read_page"]
+__all__ = ["FOUND", "WAITS", "FieldRead", "PageRead", "cropped", "encoded", "read_fields", "read_page"]

@@ -13,7 +13,8 @@ from coursework.cli.scan import scan
 from coursework.scanning import digits
 from coursework.scanning.digits import CONFIDENT, EMPTY, read_digits
 
-#: Of MNIST's test set, forty of each digit; and ``pens``, of UCI's writers in Turkey, twenty of each.
+#: Of MNIST's test set, forty of each digit; and ``pens``, five of each digit by four of UCI's ``pen_writers``
+#: in Turkey.
 with np.load(
     Path(__file__).parents[1] / "handwritten_digits.npz"
 ) as _bank:  # which unpacks an array at each look
@@ -165,13 +166,41 @@ def test_a_minus_is_no_digit():
     assert read_digits(inked(box(), stroked([(18, 45), (52, 44)]))[None])[1][0] < CONFIDENT
 
 
-def test_a_box_is_read_alike_alone_and_among_others():
-    cells = everyone()
-    together = read_digits(cells)
-    for index in range(0, len(cells), 20):
-        found, sure, _ = read_digits(cells[index : index + 1])
-        assert found[0] == together[0][index]
-        assert sure[0] == pytest.approx(together[1][index], abs=1e-5)
+def test_a_box_looks_the_same_alone_and_among_others():
+    seen = digits.prepared(everyone())
+    together = digits.features(seen)
+    for index in range(0, len(seen), 20):
+        assert digits.features(seen[index : index + 1])[0] == pytest.approx(together[index], abs=1e-3)
+
+
+def test_boxes_of_one_person_help_to_read_each_other():
+    for writer in np.unique(BANK["pen_writers"]):
+        theirs = np.flatnonzero(BANK["pen_writers"] == writer)
+        cells = np.array([inked(box(), written(index, bank="pens")) for index in theirs])
+        found, sure, _ = read_digits(cells)
+        alone = digits.probabilities(digits.features(digits.prepared(cells)))[:, :10].max(axis=1)
+        assert np.all(found[sure >= CONFIDENT] == BANK["pen_labels"][theirs][sure >= CONFIDENT])
+        assert np.sum(sure >= CONFIDENT) > np.sum(alone >= CONFIDENT) or np.all(alone >= CONFIDENT)
+
+
+def test_a_digit_is_as_near_to_a_persons_others_as_its_angles_to_them_say():
+    rng = np.random.default_rng(5)
+    found = rng.random((7, 96), np.float32)
+    chances = rng.random((7, 10))
+    usual = digits._weights()["usual"]
+
+    def cosine(index, vectors, weights):
+        return float(np.sum(weights * (vectors @ found[index]))) / np.linalg.norm(found[index])
+
+    rays = found / np.linalg.norm(found, axis=1)[:, None]
+    for index in range(7):
+        others = [k for k in range(7) if k != index]
+        for digit in range(10):
+            weights = chances[others, digit]
+            own = cosine(index, rays[others], weights)
+            everybodys = cosine(index, usual[digit][None], 1.0)
+            expected = (own / weights.sum() - everybodys) * weights.sum() / (weights.sum() + 1)
+            assert digits.nearness(found, chances)[index, digit] == pytest.approx(expected, abs=1e-5)
 
 
 def test_the_command_leaves_the_same_boxes_to_a_person():

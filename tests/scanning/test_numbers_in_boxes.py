@@ -6,7 +6,7 @@ import pytest
 from scanned_pages import DOTS, Hand, boxes_of, example_page, plain_digits, template_reader
 from tables import each_row
 
-from coursework.scanning.numbers import FieldText, number
+from coursework.scanning.numbers import FieldText, numbers
 from coursework.scanning.outlines import Shifts
 from coursework.scanning.straightening import SCALE, Straight
 
@@ -56,8 +56,14 @@ def row(
     return write
 
 
+def number(page, reader=READER, **how):
+    """The reading of the field on a page."""
+    (found,) = numbers(page, [FIELD], reader, **how)
+    return found
+
+
 def said(write):
-    return number(flat(write), FIELD, READER)
+    return number(flat(write))
 
 
 @each_row(
@@ -129,7 +135,7 @@ def test_a_faint_digit_is_read_or_waits_but_is_not_left_out(faint):
         round(box.y * 10) + 5 : round(box.bottom * 10) - 5, round(box.x * 10) + 5 : round(box.right * 10) - 5
     ]
     ink[place] = 255 - ((255 - weak.ink[place]) * faint).astype(np.uint8)
-    found = number(Straight(ink, ink, page.shifts, 4, 0.5), FIELD, READER)
+    found = number(Straight(ink, ink, page.shifts, 4, 0.5))
     assert found.text == "831" or found.waits
 
 
@@ -140,12 +146,12 @@ def test_a_box_with_less_confidence_than_is_stated_waits_with_what_it_looks_like
         digits, _ = READER(cells)
         return digits, np.where(digits == 9, chance, 1.0)
 
-    found = number(flat(row("319")), FIELD, doubting)
+    found = number(flat(row("319")), doubting)
     assert (found.text, found.waits) == ("319", "doubted")
     assert found.confidence == pytest.approx(0.97)
-    assert not number(flat(row("319")), FIELD, doubting, least=0.95).waits
+    assert not number(flat(row("319")), doubting, least=0.95).waits
     chance = 0.6
-    assert number(flat(row("319")), FIELD, doubting).waits == "digit"
+    assert number(flat(row("319")), doubting).waits == "digit"
 
 
 def maybe_four(cells):
@@ -157,18 +163,18 @@ def maybe_four(cells):
 
 
 def test_a_doubted_number_tells_what_it_may_be():
-    found = number(flat(row("319", behind="1", unit=True)), FIELD, maybe_four)
+    found = number(flat(row("319", behind="1", unit=True)), maybe_four)
     assert (found.text, found.waits) == ("319.1 mm", "doubted")
     assert [(text, pytest.approx(chance)) for text, chance in found.candidates] == [
         ("319.1 mm", 0.8),
         ("314.1 mm", 0.15),
     ]
-    assert not number(flat(row("315")), FIELD, maybe_four).candidates
+    assert not number(flat(row("315")), maybe_four).candidates
 
 
 def test_a_doubted_number_with_something_beside_it_is_never_taken():
     beside = row("319", more=lambda hand: hand.stroke([(158, 47), (160, 51), (162, 48), (164, 51)]))
-    found = number(flat(beside), FIELD, maybe_four)
+    found = number(flat(beside), maybe_four)
     assert (found.waits, found.candidates) == ("free", ())
 
 
@@ -179,7 +185,7 @@ def test_a_short_thin_minus_is_read_or_waits_but_is_not_left_out(sign, dark):
     ink = page.ink.copy()
     x, y = round((sign.x + 2.5) * SCALE), round((sign.y + 4.5) * SCALE)
     ink[y : y + 2, x : x + 14] = 255 - dark
-    found = number(Straight(ink, ink, page.shifts, 4, 0.5), FIELD, READER)
+    found = number(Straight(ink, ink, page.shifts, 4, 0.5))
     assert "-" in found.text or found.waits
 
 
@@ -188,7 +194,7 @@ def test_the_bar_of_a_fraction_is_no_one(lean, waits):
     box = FIELD.digits[-2]
     x, y = box.x + 3.5, box.y + 4.5
     bar = row("4_5", more=lambda hand: hand.stroke([(x + lean / 2, y - 3), (x - lean / 2, y + 3)]))
-    found = number(flat(bar), FIELD, lambda cells: (np.array([4, 1, 5]), np.ones(3)))
+    found = number(flat(bar), lambda cells: (np.array([4, 1, 5]), np.ones(3)))
     assert (found.text, found.waits) == ("415", waits)
 
 
@@ -197,7 +203,7 @@ def test_a_slanted_one_at_the_end_of_a_number_is_one():
     leaning = row(
         "45_", more=lambda hand: hand.stroke([(box.x + 4.6, box.y + 1.5), (box.x + 2.2, box.y + 7.5)])
     )
-    assert number(flat(leaning), FIELD, lambda cells: (np.array([4, 5, 1]), np.ones(3))).waits == ""
+    assert number(flat(leaning), lambda cells: (np.array([4, 5, 1]), np.ones(3))).waits == ""
 
 
 @each_row("dark", [30, 60, 120])
@@ -206,9 +212,7 @@ def test_an_edge_that_runs_through_a_box_is_no_one(dark):
     ink, box = page.ink.copy(), FIELD.digits[1]
     x = round((box.x + 3.5) * SCALE)
     ink[round((box.y - 8) * SCALE) : round((box.bottom + 8) * SCALE), x : x + 5] = 255 - dark
-    found = number(
-        Straight(ink, ink, page.shifts, 4, 0.5), FIELD, lambda cells: (np.array([8, 1]), np.ones(2))
-    )
+    found = number(Straight(ink, ink, page.shifts, 4, 0.5), lambda cells: (np.array([8, 1]), np.ones(2)))
     assert found.waits == "digit"
 
 
@@ -222,7 +226,5 @@ def test_nor_is_one_that_cuts_its_corner(dark, below):
     high = ((box.y - 2.5, box.bottom - 1), (box.bottom + 2.5, box.y + 1))[below]
     ends = zip((box.x + 1, box.right + 1.8), high, strict=True)
     cv2.line(ink, *((round(x * SCALE), round(y * SCALE)) for x, y in ends), 255 - dark, 5)
-    found = number(
-        Straight(ink, ink, page.shifts, 4, 0.5), FIELD, lambda cells: (np.array([8, 1]), np.ones(2))
-    )
+    found = number(Straight(ink, ink, page.shifts, 4, 0.5), lambda cells: (np.array([8, 1]), np.ones(2)))
     assert (found.text, found.waits) == ("81", "digit")

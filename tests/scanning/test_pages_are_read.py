@@ -119,6 +119,24 @@ def test_in_black_and_white_doubt_counts_tenfold(bilevel, waits, sheet):
     assert {bool(f.waits) for f in found.fields if f.field.what == "number" and f.text} == {waits}
 
 
+def test_the_reader_sees_all_boxes_of_a_page_at_once(sheet):
+    piles = []
+
+    def counting(cells):
+        piles.append(len(cells))
+        return READER(cells)
+
+    hand = Hand(pen="black", bank=plain_digits, jitter=0.2, rng=np.random.default_rng(5))
+    filled, wrote = filled_in(sheet, PAGE, hand, odd=0.0)
+    picture = scanned(filled, Scan(dpi=200), np.random.default_rng(0))
+    read_page(PageImage("scan.pdf", 1, picture), PAPERS, counting)
+    figures = [
+        sum(map(str.isdigit, w.text)) for w, f in zip(wrote, PAGE.fields, strict=True) if f.what == "number"
+    ]
+    assert sum(map(bool, figures)) > 1
+    assert piles == [sum(figures)]
+
+
 @pytest.mark.parametrize("rows", few_and_all(simulated.PENS, 2))
 def test_a_good_scan_is_read_whole_whatever_the_pen(rows, sheet):
     for pen in rows:
