@@ -47,7 +47,7 @@ from coursework.scanning.numbers import framed
 WEIGHTS = Path(__file__).parents[1] / "coursework" / "scanning" / "digits.npz"
 BANK = Path(__file__).parents[1] / "tests" / "handwritten_digits.npz"
 CHUNK, PAGES, BATCH = 5_000, 60, 512
-PAGE = 45  #: boxes that a page has of one person
+PAGE = 45  #: digit boxes on a page
 APART = 50_000
 
 # ------------------------------------------------------------------- data
@@ -60,23 +60,24 @@ def american(folder: Path, part: str) -> Digits:
     return Digits(digits[cut], labels[cut])
 
 
-def pens_of(folder: Path) -> list[tuple[float, Digits]]:
-    """Writers with pens on tablets, and bitmaps of some of them, with their shares."""
+def other_hands(folder: Path) -> list[tuple[float, Digits]]:
+    """Collections of other writers than MNIST's and Semeion's, most with pens on tablets, with their
+    shares."""
     dots = bitmaps(folder, "tra")
     return [(0.5, unipen(folder)), (0.36, paths(folder, "tra")), (0.07, dots), (0.07, coarse(dots))]
 
 
 #: Sets of careful boxes by writers whom the net has not seen.
 APART_HANDS = {
-    "turkish": lambda folder: paths(folder, "tes 1"),
+    "turkish": lambda folder: paths(folder, "tes", odd=True),
     "french": formulas,
     "bitmaps": lambda folder: bitmaps(folder, "windep"),
     "coarse": lambda folder: coarse(bitmaps(folder, "windep")),
 }
 
-#: Sets of which a chunk is the boxes of one writer whom the net has not seen; the first one calibrates.
+#: Sets with a chunk for each unseen writer; ``hand`` calibrates.
 ONE_HAND = {
-    "hand": lambda folder: paths(folder, "tes 0"),
+    "hand": lambda folder: paths(folder, "tes", odd=False),
     "turkish_hand": APART_HANDS["turkish"],
     "french_hand": formulas,
 }
@@ -125,7 +126,7 @@ def drawn(job: tuple[str, int, Path, Path]) -> tuple[np.ndarray, np.ndarray]:
         if name in APART_HANDS:
             careful = Careful(pen, [(1.0, APART_HANDS[name](folder))], Careful.DIGITS)
         elif name == "hands":
-            careful = Careful(pen, pens_of(folder), (0.74, 0.04, 0.07, 0.05, 0.1))
+            careful = Careful(pen, other_hands(folder), (0.74, 0.04, 0.07, 0.05, 0.1))
         else:
             hands = [(0.8, american(folder, "train")), (0.2, semeion(folder))]
             careful = Careful(pen, hands, pens=float(name == "pens"))
@@ -144,7 +145,11 @@ def drawn(job: tuple[str, int, Path, Path]) -> tuple[np.ndarray, np.ndarray]:
         others = APART_HANDS["coarse"](folder)
         make = lambda: scanner.digit(*one_of(pen, others))  # noqa: E731
     if name in ("scanned", "scanned_apart"):
-        hands = [hand for _, hand in pens_of(folder)[:2]] if name == "scanned" else [paths(folder, "tes 1")]
+        hands = (
+            [hand for _, hand in other_hands(folder)[:2]]
+            if name == "scanned"
+            else [paths(folder, "tes", odd=True)]
+        )
         make = lambda: scanner.digit(*one_of(pen, hands[rng.integers(len(hands))]))  # noqa: E731
     if name == "negatives":
         pen.letter = FontLetters(pen)
@@ -273,8 +278,8 @@ def draw(options: argparse.Namespace) -> None:
 
 
 def clean(options: argparse.Namespace) -> None:
-    """Leave out of the hands of pens the digits to whose labels the net of the package gives hardly a chance:
-    most of these labels are wrong, and would teach doubt."""
+    """Leave out the digits of other hands to whose labels the net of the package gives hardly a chance: most
+    of these labels are wrong, and would teach doubt."""
     for path in sorted([*options.work.glob("hands_[0-9]*.npz"), *options.work.glob("scanned_[0-9]*.npz")]):
         with np.load(path) as chunk:
             seen, labels = chunk["seen"], chunk["labels"]
@@ -552,14 +557,10 @@ def settle(options: argparse.Namespace) -> None:
     torch.save(net.state_dict(), kept)
 
 
-def export(trained, temperature: float, usual: np.ndarray | float = 0.0, hand: float = 0.0) -> None:
-    """The net as plain arrays of half precision, each batch normalisation put into its convolution; what of
-    a digit's features is ``usual``, and the weight of a person's own."""
-    arrays = {
-        "temperature": np.float32(temperature),
-        "usual": usual + np.zeros((10, 1), np.float32),
-        "hand": np.float32(hand),
-    }
+def export(trained, temperature: float, average: np.ndarray, own: float) -> None:
+    """The net as plain arrays of half precision, each batch normalisation put into its convolution; the
+    ``average`` unit features of each digit, and the weight of a person's ``own`` digits."""
+    arrays = {"temperature": np.float32(temperature), "average": average, "own": np.float32(own)}
     for name, (convolution, normal) in trained.convolutions.items():
         scale = (normal.weight / (normal.running_var + normal.eps).sqrt()).detach()
         weight = convolution.weight.detach() * scale[:, None, None, None]
@@ -581,26 +582,22 @@ def calibrate(options: argparse.Namespace) -> None:
 
     trained = network()
     trained.load_state_dict(torch.load(options.work / "net.pt"))
-    export(trained, 1.0)
+    export(trained, 1.0, np.zeros((10, trained.full["classes"].in_features)), 0.0)
     seen, labels = (array[::4] for array in stored(options, "check"))
     logs = np.log(net.probabilities(_features(seen)) + 1e-300)
     temperature = likeliest(lambda its: _unlikely(logs / its, labels), (0.2, 5))
-    usual = _usual(options)
-    export(trained, temperature, usual)
-    pages = [
-        (found, labels)
-        for seen, labels in _chunks(options, "hand")
-        for found, labels in pages_of(_features(seen), labels)
-    ]
+    average = _average(options)
+    export(trained, temperature, average, 0.0)
+    pages = by_page(options, "hand")
 
-    def unlikely(hand: float) -> float:
-        net._weights()["hand"] = np.float32(hand)
-        costs = [_unlikely(np.log(net.of_one_hand(found) + 1e-300), labels) for found, labels in pages]
-        return float(np.mean(costs))
+    def unlikely(own: float) -> float:
+        net._weights()["own"] = np.float32(own)
+        logs = np.log(np.concatenate([net.of_one_hand(hidden) for hidden, _ in pages]) + 1e-300)
+        return _unlikely(logs, np.concatenate([labels for _, labels in pages]))
 
-    hand = likeliest(unlikely, (0, 60))
-    export(trained, temperature, usual, hand)
-    print("temperature", temperature, "hand", hand)
+    own = likeliest(unlikely, (0, 60))
+    export(trained, temperature, average, own)
+    print("temperature", temperature, "weight of own digits", own)
 
 
 def likeliest(cost, bounds: tuple[float, float]) -> float:
@@ -618,19 +615,22 @@ def _features(seen: np.ndarray) -> np.ndarray:
     return net.features(seen / np.float32(255))
 
 
-def _usual(options: argparse.Namespace) -> np.ndarray:
-    """The mean of the features of each digit, as rays, over boxes that trained."""
+def _average(options: argparse.Namespace) -> np.ndarray:
+    """The mean of the features of each digit, as unit vectors, over boxes that trained."""
     parts = [stored(options, name) for name in SHARES]
     seen, labels = (np.concatenate([part[k][::60] for part in parts]) for k in (0, 1))
-    found = _features(seen)
-    rays = found / np.linalg.norm(found, axis=1, keepdims=True)
-    return np.array([rays[labels == digit].mean(axis=0) for digit in range(10)])
+    hidden = _features(seen)
+    units = hidden / np.linalg.norm(hidden, axis=1, keepdims=True)
+    return np.array([units[labels == digit].mean(axis=0) for digit in range(10)])
 
 
-def pages_of(found: np.ndarray, labels: np.ndarray) -> list[tuple[np.ndarray, np.ndarray]]:
-    """The boxes of a writer, page by page."""
-    count = max(1, round(len(labels) / PAGE))
-    return list(zip(np.array_split(found, count), np.array_split(labels, count), strict=True))
+def by_page(options: argparse.Namespace, name: str) -> list[tuple[np.ndarray, np.ndarray]]:
+    """Features and labels of the boxes of a set's writers, page by page."""
+    pages = []
+    for seen, labels in _chunks(options, name):
+        count = max(1, round(len(labels) / PAGE))
+        pages += zip(np.array_split(_features(seen), count), np.array_split(labels, count), strict=True)
+    return pages
 
 
 # ------------------------------------------------------------------- the proof
@@ -639,7 +639,8 @@ def pages_of(found: np.ndarray, labels: np.ndarray) -> list[tuple[np.ndarray, np
 def report(options: argparse.Namespace) -> None:
     with ProcessPoolExecutor(options.processes) as pool:
         found = dict(zip(SETS, pool.map(_chances, SETS, [options] * len(SETS)), strict=True))
-    limits(*found["check"])
+    for name in ("check", "turkish_hand", "french_hand"):
+        limits(name, *found[name])
     print("| set | boxes | error, no limit | wrong above the limit | told unsure |\n|---|--:|--:|--:|--:|")
     for name, (chances, labels) in found.items():
         print("|", name, "|", " | ".join(_row(chances, labels)), "|")
@@ -649,8 +650,8 @@ def _chances(name: str, options: argparse.Namespace) -> tuple[np.ndarray, np.nda
     if name not in ONE_HAND:
         seen, labels = stored(options, name)
         return net.probabilities(_features(seen)), labels
-    pages = [page for seen, labels in _chunks(options, name) for page in pages_of(_features(seen), labels)]
-    chances = [net.of_one_hand(found) for found, _ in pages]
+    pages = by_page(options, name)
+    chances = [net.of_one_hand(hidden) for hidden, _ in pages]
     return np.concatenate(chances), np.concatenate([labels for _, labels in pages])
 
 
@@ -666,8 +667,9 @@ def _read(chances: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     return chances[:, : BLANK + 1].argmax(1), chances[:, : BLANK + 1].max(1)
 
 
-def limits(chances: np.ndarray, labels: np.ndarray) -> None:
-    """What limits would do on the set that calibrates."""
+def limits(name: str, chances: np.ndarray, labels: np.ndarray) -> None:
+    """What limits would do on a set."""
+    print(name)
     taken, sure = _read(chances)
     digit = labels <= BLANK
     for limit in (0.9, 0.95, 0.98, 0.99, 0.995, 0.998, 0.999, 0.9995, 0.9998, 0.9999):
@@ -684,7 +686,7 @@ def bank(options: argparse.Namespace) -> None:
     ``pen_writers``."""
     digits, labels, _ = american(options.data, "test")
     chosen = _of_each(labels, slice(100, 140))
-    everybody, rng = paths(options.data, "tes 1"), np.random.default_rng(1)
+    everybody, rng = paths(options.data, "tes", odd=True), np.random.default_rng(1)
     pens, pen_labels, pen_writers = [], [], []
     for writer in np.unique(everybody.writers)[:4]:
         theirs, broad = everybody.of(everybody.writers == writer), rng.uniform(2, 3.5)

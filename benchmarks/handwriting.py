@@ -54,7 +54,8 @@ def mnist(folder: Path, part: str) -> Digits:
 
 
 def _idx(path: Path) -> np.ndarray:
-    raw = (gzip.open if path.suffix == ".gz" else open)(path, "rb").read()
+    raw = path.read_bytes()
+    raw = gzip.decompress(raw) if path.suffix == ".gz" else raw
     shape = np.frombuffer(raw, ">i4", raw[3], 4)
     return np.frombuffer(raw, {8: np.uint8, 12: ">i4"}[raw[2]], -1, 4 + 4 * raw[3]).reshape(shape)
 
@@ -68,8 +69,8 @@ def semeion(folder: Path) -> Digits:
     return Digits(np.array(large).astype(np.uint8), rows[:, 256:].argmax(1))
 
 
-#: The first digits of UCI's form, which every writer filled in.
-_FORM = r"(?:0123456789){2,}"
+#: The first digits of UCI's form, which every writer filled in; some left out a few.
+_FORM = r"(?:0?123456(?:78)?9){2,}(?=0955)"
 
 
 def bitmaps(folder: Path, part: str) -> Digits:
@@ -80,7 +81,8 @@ def bitmaps(folder: Path, part: str) -> Digits:
     digits = [[[255 * int(dot) for dot in row] for row in lines[k : k + 32]] for k in first]
     labels = "".join(lines[k + 32] for k in first)
     begun = np.isin(np.arange(len(labels)), [found.start() for found in re.finditer(_FORM, labels)])
-    return Digits(np.array(digits, np.uint8), np.array([*map(int, labels)]), np.cumsum(begun))
+    writers = np.cumsum(begun) if begun.any() else None  # the digits that train are shuffled
+    return Digits(np.array(digits, np.uint8), np.array([*map(int, labels)]), writers)
 
 
 def coarse(digits: Digits) -> Digits:
@@ -90,10 +92,9 @@ def coarse(digits: Digits) -> Digits:
     return digits._replace(pictures=np.clip(np.pad(large, ((0, 0), (2, 2), (2, 2))), 0, 255).astype(np.uint8))
 
 
-def paths(folder: Path, part: str) -> Digits:
-    """Return UCI's digits as paths (UNIPEN); ``part`` is ``tra`` or ``tes``, of 14 other writers: ``tes 1``
-    is of those with odd numbers, ``tes 0`` of those with even ones."""
-    part, _, odd = part.partition(" ")
+def paths(folder: Path, part: str, *, odd: bool | None = None) -> Digits:
+    """Return UCI's digits as paths (UNIPEN); ``part`` is ``tra`` or ``tes``, of 14 other writers; of these
+    only those with odd numbers, or with even ones, if ``odd`` says so."""
     found = []
     for segment in (folder / f"pendigits-orig.{part}").read_text("ascii").split(".SEGMENT DIGIT")[1:]:
         label, about = re.search(r'"(\d)"', segment), re.search(r"\.COMMENT\s+\d+\s+(\d+)", segment)
@@ -102,7 +103,7 @@ def paths(folder: Path, part: str) -> Digits:
         if label and about and any(len(each) > 1 for each in strokes):
             found.append(([each for each in strokes if len(each)], int(label[1]), int(about[1])))
     digits = _digits(found)
-    return digits.of(digits.writers % 2 == int(odd)) if odd else digits
+    return digits if odd is None else digits.of(digits.writers % 2 == odd)
 
 
 def _digits(found: Sequence[tuple[Paths, int, int | str]]) -> Digits:
@@ -117,7 +118,7 @@ def unipen(folder: Path) -> Digits:
     """Return UNIPEN's isolated digits as paths: files that name strokes of other files by their numbers."""
     found: list[tuple[int, Paths]] = []
     for path in sorted((folder / "unipen" / "data" / "1a").rglob("*.dat")):
-        if "tos" in path.parts:  # its numbers are not those of its strokes
+        if "tos" in path.parts:  # its numbers do not match its strokes
             continue
         text = path.read_text("latin-1")
         included = re.findall(r"^\.INCLUDE\s+(\S+)", text, re.MULTILINE)

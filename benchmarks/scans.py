@@ -8,9 +8,9 @@ python benchmarks/scans.py FOLDER wrong            # what was read wrong
 
 Two thirds of the answers are right ones of a variant, rounded; of the wrong ones most are near a right one: a
 digit changed or exchanged, another sign, a point elsewhere, a few per cent too many. FOLDER keeps the printed
-sheets and a line a page, ``read.jsonl``. Every page is by one writer, every thirty by those of another of the
-collections that `handwriting.py` lists and reads from FOLDER; nothing was trained with them. Where none is
-there, they are 400 of MNIST's test set from the tests, of whom no page has one alone.
+sheets and a line a page, ``read.jsonl``. Each page is by one writer. The collection changes every thirty
+pages: `handwriting.py` lists them and reads them from FOLDER; nothing was trained with them. Without
+collections, the 400 MNIST digits of the tests are used, of mixed writers.
 """
 
 from __future__ import annotations
@@ -81,7 +81,7 @@ def sheets(folder: Path) -> list[tuple[AnswerPage, Path]]:
 #: Writers whom no training saw, and how their digits are read.
 HANDS = {
     "American": lambda folder: mnist(folder, "t10k"),
-    "Turkish": lambda folder: paths(folder, "tes 1"),
+    "Turkish": lambda folder: paths(folder, "tes", odd=True),
     "French": formulas,
     "Turkish, stretched": lambda folder: bitmaps(folder, "windep"),
 }
@@ -100,13 +100,14 @@ def collection(folder: Path, hand: str) -> Digits:
 
 
 def bank(folder: Path, hand: str, rng: np.random.Generator) -> simulated.Bank:
-    """Return the digits of one writer of a collection. Where the writer has no more, others' come, and none
-    twice, since a digit that somebody writes again does not look the same."""
+    """Return the digits of one writer of a collection. If that writer runs out, digits of others follow; no
+    picture is used twice, since a digit that somebody writes again looks different."""
     digits = collection(folder, hand)
     writer = rng.choice(np.unique(digits.writers)) if digits.writers is not None else None
     order = rng.permutation(len(digits.labels))
     if writer is not None:
         order = order[np.argsort(digits.writers[order] != writer, kind="stable")]
+    broad = rng.uniform(5, 11)
     left = {digit: iter(order[digits.labels[order] == digit].tolist()) for digit in range(10)}
 
     def drawn(digit: int, rng: np.random.Generator) -> np.ndarray:
@@ -117,7 +118,6 @@ def bank(folder: Path, hand: str, rng: np.random.Generator) -> simulated.Bank:
         rows, columns = np.flatnonzero(ink.max(1) > 0.2), np.flatnonzero(ink.max(0) > 0.2)
         return ink[rows[0] : rows[-1] + 1, columns[0] : columns[-1] + 1]
 
-    broad = rng.uniform(5, 11)
     return drawn
 
 

@@ -44,7 +44,8 @@ def read_digits(
 ) -> tuple[NDArray[np.int64], NDArray[np.float64], NDArray[np.float64]]:
     """Return the digit in each box, ``EMPTY`` for none, its confidence, and the probability of each digit.
 
-    The boxes are those of one person, and help to read each other.
+    The boxes are those of one person, and help to read each other: a digit is likelier if the person's
+    other boxes that show it look alike.
 
     Parameters
     ----------
@@ -76,31 +77,36 @@ def prepared(cells: NDArray[np.uint8]) -> Floats:
     return seen
 
 
-def probabilities(found: Floats) -> NDArray[np.float64]:
+def probabilities(hidden: Floats) -> NDArray[np.float64]:
     """Return calibrated probabilities of the classes, shape (n, 13), for features of boxes, each alone."""
-    return _softmax(_logits(found))
+    return _softmax(_logits(hidden))
 
 
-def of_one_hand(found: Floats) -> NDArray[np.float64]:
-    """Return calibrated probabilities of the classes, shape (n, 13), for features of boxes of one person."""
-    logits = _logits(found)
-    logits[:, :BLANK] += _weights()["hand"] * nearness(found, probabilities(found)[:, :BLANK])
-    return _softmax(logits)
+def of_one_hand(hidden: Floats) -> NDArray[np.float64]:
+    """Return calibrated probabilities of the classes, shape (n, 13), for features of boxes of one person.
 
-
-def nearness(found: Floats, chances: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return how much nearer each box is to the same person's other boxes of a digit than to everybody's,
-    shape (n, 10).
-
-    Nearness is the cosine between the features of a box and a prototype. That of the person is the mean of
-    the other boxes, weighted by the ``chances``, (n, 10), that they show the digit; it counts for less the
-    fewer they are.
+    The person's other boxes tell which digit a box shows, and not whether it shows one: the ten digits
+    together are as likely as without them.
     """
-    rays = found / np.maximum(np.linalg.norm(found, axis=1, keepdims=True), 1e-6)
+    chances = probabilities(hidden)
+    digits = chances[:, :BLANK]
+    favoured = digits * np.exp(_weights()["own"] * similarity(hidden, digits))
+    chances[:, :BLANK] = favoured * (digits.sum(axis=1) / favoured.sum(axis=1))[:, None]
+    return chances
+
+
+def similarity(hidden: Floats, chances: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return how much more similar each box is to the same person's other boxes of a digit than to the
+    average box of that digit, shape (n, 10).
+
+    Similarity is the mean cosine between features, weighted by the ``chances``, shape (n, 10), that the other
+    boxes show the digit. It is shrunk by n / (n + 1), where n is their sum.
+    """
+    units = hidden / np.maximum(np.linalg.norm(hidden, axis=1, keepdims=True), 1e-6)
     others = chances.sum(axis=0) - chances
-    own = rays @ (chances.T @ rays).T - chances * (rays**2).sum(axis=1, keepdims=True)
-    near: NDArray[np.float64] = (own - others * (rays @ _weights()["usual"].T)) / (others + 1)
-    return near
+    own = units @ (chances.T @ units).T - chances * (units**2).sum(axis=1, keepdims=True)
+    more: NDArray[np.float64] = (own - others * (units @ _weights()["average"].T)) / (others + 1)
+    return more
 
 
 def _resized(cell: NDArray[np.uint8]) -> Floats:
@@ -148,9 +154,9 @@ def _features(seen: Floats) -> Floats:
     return hidden
 
 
-def _logits(found: Floats) -> Floats:
+def _logits(hidden: Floats) -> Floats:
     w = _weights()
-    logits: Floats = (found @ w["classes.weight"] + w["classes.bias"]) / w["temperature"]
+    logits: Floats = (hidden @ w["classes.weight"] + w["classes.bias"]) / w["temperature"]
     return logits
 
 

@@ -89,8 +89,8 @@ class _Row:
 
 @dataclass(frozen=True)
 class _Ink:
-    """What the boxes of a field show before their digits are read: those that are ``bare``, the tick of the
-    unit, a picture of each box for a digit, and the reason for which a person reads them, if any."""
+    """Boxes of a field before their digits are read: which are ``bare``, the tick of the unit, a picture of
+    each box for a digit, and the reason for which a person reads them, if any."""
 
     field: AnswerField
     bare: dict[Box, bool]
@@ -104,7 +104,8 @@ def numbers(
 ) -> list[FieldText]:
     """Return the readings of the fields for numbers of a page.
 
-    The reader is handed the boxes of all of them at once, since one person wrote them.
+    The reader gets the boxes of all fields at once, since one person wrote them; also those of fields that
+    wait for a person because something crosses their boxes.
     """
     inks = [_ink(page, field) for field in fields]
     boxes = _digits(inks, reader)
@@ -137,7 +138,7 @@ def _is_bare(page: Straight, box: Box, stroke: float) -> bool:
 
 
 def _digits(inks: Iterable[_Ink], reader: Reader) -> dict[Box, _ReadNumber]:
-    """Return each box that is not bare as read; what is no digit is read with no confidence."""
+    """Return each box that is not bare as read; a box without a digit has confidence 0."""
     pictures = {box: picture for ink in inks for box, picture in ink.pictures.items() if not ink.bare[box]}
     if not pictures:
         return {}
@@ -161,7 +162,7 @@ def _number(page: Straight, ink: _Ink, boxes: Mapping[Box, _ReadNumber], least: 
     if all(ink.bare.values()):
         read = FieldText("", 1.0, "" if ink.unit in (EMPTY, TICKED) else "unit")
     else:
-        own = {box: boxes.get(box, _ReadNumber()) for box in ink.pictures}
+        own = {box: _ReadNumber() if ink.bare[box] else boxes[box] for box in ink.pictures}
         read = _written(page, ink, own, least)
     if read.waits not in ("", "doubted") or not written_beside(page, ink.field):
         return read

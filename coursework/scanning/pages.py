@@ -136,7 +136,7 @@ def _field_read(page: Straight, field: AnswerField, read: FieldText) -> FieldRea
 
 
 def _mark(page: Straight, field: AnswerField) -> FieldText:
-    """Return the reading of ticks, or whether something is written or drawn that a person reads."""
+    """Return the reading of ticks; for texts and drawings, only whether there is ink."""
     if field.what == "ticks":
         return _ticks(page, field)
     return FieldText("", waits="" if is_bare(page, field.whole, 1.2) else field.what)

@@ -13,8 +13,8 @@ from coursework.cli.scan import scan
 from coursework.scanning import digits
 from coursework.scanning.digits import CONFIDENT, EMPTY, read_digits
 
-#: Of MNIST's test set, forty of each digit; and ``pens``, five of each digit by four of UCI's ``pen_writers``
-#: in Turkey.
+#: Forty of each digit of MNIST's test set; ``pens``: five of each digit by each of four of UCI's writers in
+#: Turkey, numbered in ``pen_writers``.
 with np.load(
     Path(__file__).parents[1] / "handwritten_digits.npz"
 ) as _bank:  # which unpacks an array at each look
@@ -170,37 +170,59 @@ def test_a_box_looks_the_same_alone_and_among_others():
     seen = digits.prepared(everyone())
     together = digits.features(seen)
     for index in range(0, len(seen), 20):
-        assert digits.features(seen[index : index + 1])[0] == pytest.approx(together[index], abs=1e-3)
+        assert digits.features(seen[index : index + 1])[0] == pytest.approx(together[index], abs=1e-5)
+
+
+WRITERS = [np.flatnonzero(BANK["pen_writers"] == writer) for writer in np.unique(BANK["pen_writers"])]
+
+
+def pages_taken(pages):
+    """How many boxes of some pages of digits by pens are taken; none of them wrongly."""
+    count = 0
+    for page in pages:
+        found, sure, _ = read_digits(np.array([inked(box(), written(index, bank="pens")) for index in page]))
+        taken = sure >= CONFIDENT
+        assert np.all(found[taken] == BANK["pen_labels"][page][taken])
+        count += int(taken.sum())
+    return count
 
 
 def test_boxes_of_one_person_help_to_read_each_other():
-    for writer in np.unique(BANK["pen_writers"]):
-        theirs = np.flatnonzero(BANK["pen_writers"] == writer)
-        cells = np.array([inked(box(), written(index, bank="pens")) for index in theirs])
-        found, sure, _ = read_digits(cells)
-        alone = digits.probabilities(digits.features(digits.prepared(cells)))[:, :10].max(axis=1)
-        assert np.all(found[sure >= CONFIDENT] == BANK["pen_labels"][theirs][sure >= CONFIDENT])
-        assert np.sum(sure >= CONFIDENT) > np.sum(alone >= CONFIDENT) or np.all(alone >= CONFIDENT)
+    mixed = (
+        np.concatenate(WRITERS)
+        .reshape(len(WRITERS), 10, -1)
+        .transpose(2, 1, 0)
+        .reshape(-1, len(WRITERS) * 10)
+    )
+    assert pages_taken(WRITERS) > pages_taken(mixed)
 
 
-def test_a_digit_is_as_near_to_a_persons_others_as_its_angles_to_them_say():
+def test_what_a_persons_other_boxes_tell_is_which_digit_and_not_whether_it_is_one():
+    cells = [inked(box(), struck(index)) for index in CHOSEN[:10]]
+    cells += [inked(box(), written(index, bank="pens")) for index in WRITERS[0]]
+    hidden = digits.features(digits.prepared(np.array(cells)))
+    alone, together = digits.probabilities(hidden), digits.of_one_hand(hidden)
+    assert together[:, :10].sum(axis=1) == pytest.approx(alone[:, :10].sum(axis=1))
+    assert together[:, 10:] == pytest.approx(alone[:, 10:])
+    assert together.sum(axis=1) == pytest.approx(1.0)
+
+
+def test_similarity_is_as_its_definition_says():
     rng = np.random.default_rng(5)
-    found = rng.random((7, 96), np.float32)
-    chances = rng.random((7, 10))
-    usual = digits._weights()["usual"]
+    hidden, chances = rng.random((7, 96), np.float32), rng.random((7, 10))
+    average = digits._weights()["average"]
 
-    def cosine(index, vectors, weights):
-        return float(np.sum(weights * (vectors @ found[index]))) / np.linalg.norm(found[index])
+    def cosine(one, other):
+        return one @ other / np.linalg.norm(one) / np.linalg.norm(other)
 
-    rays = found / np.linalg.norm(found, axis=1)[:, None]
-    for index in range(7):
+    for index, one in enumerate(hidden):
         others = [k for k in range(7) if k != index]
         for digit in range(10):
             weights = chances[others, digit]
-            own = cosine(index, rays[others], weights)
-            everybodys = cosine(index, usual[digit][None], 1.0)
-            expected = (own / weights.sum() - everybodys) * weights.sum() / (weights.sum() + 1)
-            assert digits.nearness(found, chances)[index, digit] == pytest.approx(expected, abs=1e-5)
+            own = np.average([cosine(one, hidden[k]) for k in others], weights=weights)
+            usual = one @ average[digit] / np.linalg.norm(one)
+            expected = (own - usual) * weights.sum() / (weights.sum() + 1)
+            assert digits.similarity(hidden, chances)[index, digit] == pytest.approx(expected, abs=1e-5)
 
 
 def test_the_command_leaves_the_same_boxes_to_a_person():

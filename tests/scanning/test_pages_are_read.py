@@ -128,13 +128,20 @@ def test_the_reader_sees_all_boxes_of_a_page_at_once(sheet):
 
     hand = Hand(pen="black", bank=plain_digits, jitter=0.2, rng=np.random.default_rng(5))
     filled, wrote = filled_in(sheet, PAGE, hand, odd=0.0)
-    picture = scanned(filled, Scan(dpi=200), np.random.default_rng(0))
-    read_page(PageImage("scan.pdf", 1, picture), PAPERS, counting)
-    figures = [
-        sum(map(str.isdigit, w.text)) for w, f in zip(wrote, PAGE.fields, strict=True) if f.what == "number"
-    ]
-    assert sum(map(bool, figures)) > 1
-    assert piles == [sum(figures)]
+    rows = [(f, w.text) for f, w in zip(PAGE.fields, wrote, strict=True) if f.what == "number"]
+    picture = PageImage("scan.pdf", 1, scanned(filled, Scan(dpi=200), np.random.default_rng(0)))
+    assert [f.text for f in read_page(picture, PAPERS, counting).fields] == [w.text for w in wrote]
+    assert piles == [sum(sum(map(str.isdigit, text)) for _, text in rows)]
+    first = next(f for f, text in rows if text)
+    hand.stroke([(first.free.x + 3, first.free.y + 3), (first.free.x + 8, first.free.y + 6)])
+    picture = PageImage("scan.pdf", 1, scanned(hand.finish(sheet), Scan(dpi=200), np.random.default_rng(0)))
+    assert [f.waits for f in read_page(picture, PAPERS, counting).fields if f.field == first] == ["free"]
+    assert piles[1] == piles[0] - sum(map(str.isdigit, dict(rows)[first]))
+
+
+def test_no_reader_is_asked_about_a_page_without_digits(sheet):
+    picture = PageImage("scan.pdf", 1, scanned(sheet, Scan(dpi=200), np.random.default_rng(0)))
+    assert not any(f.text or f.waits for f in read_page(picture, PAPERS, None).fields)
 
 
 @pytest.mark.parametrize("rows", few_and_all(simulated.PENS, 2))
