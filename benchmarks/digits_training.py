@@ -1,7 +1,6 @@
 """Training, calibration and proof of the net that reads digits: `coursework/scanning/digits.npz`.
 
     python benchmarks/digits_training.py --data FOLDER --work FOLDER draw
-    python benchmarks/digits_training.py --data FOLDER --work FOLDER clean
     python benchmarks/digits_training.py --data FOLDER --work FOLDER train
     python benchmarks/digits_training.py --data FOLDER --work FOLDER report
     python benchmarks/digits_training.py --data FOLDER --work FOLDER bank
@@ -38,7 +37,7 @@ from digits_drawing import (
     Pen,
     Scanner,
 )
-from handwriting import Digits, Paths, bitmaps, coarse, formulas, inked, mnist, paths, semeion, unipen
+from handwriting import Digits, Paths, bitmaps, coarse, formulas, inked, mnist, paths, semeion
 
 from coursework.scanning import digits as net
 from coursework.scanning.digits import CONFIDENT, LAYERS, prepared
@@ -48,6 +47,7 @@ WEIGHTS = Path(__file__).parents[1] / "coursework" / "scanning" / "digits.npz"
 BANK = Path(__file__).parents[1] / "tests" / "handwritten_digits.npz"
 CHUNK, PAGES, BATCH = 5_000, 60, 512
 PAGE = 45  #: digit boxes on a page
+STRUCK = OTHER + 1  #: label of a digit that is struck out
 APART = 50_000
 
 # ------------------------------------------------------------------- data
@@ -60,11 +60,10 @@ def american(folder: Path, part: str) -> Digits:
     return Digits(digits[cut], labels[cut])
 
 
-def other_hands(folder: Path) -> list[tuple[float, Digits]]:
-    """Collections of other writers than MNIST's and Semeion's, most with pens on tablets, with their
-    shares."""
+def turkish(folder: Path) -> list[tuple[float, Digits]]:
+    """UCI's writers who train, as paths, as bitmaps and as coarse ones, with their shares."""
     dots = bitmaps(folder, "tra")
-    return [(0.5, unipen(folder)), (0.36, paths(folder, "tra")), (0.07, dots), (0.07, coarse(dots))]
+    return [(0.8, paths(folder, "tra")), (0.1, dots), (0.1, coarse(dots))]
 
 
 #: Sets of careful boxes by writers whom the net has not seen.
@@ -126,7 +125,7 @@ def drawn(job: tuple[str, int, Path, Path]) -> tuple[np.ndarray, np.ndarray]:
         if name in APART_HANDS:
             careful = Careful(pen, [(1.0, APART_HANDS[name](folder))], Careful.DIGITS)
         elif name == "hands":
-            careful = Careful(pen, other_hands(folder), (0.74, 0.04, 0.07, 0.05, 0.1))
+            careful = Careful(pen, turkish(folder), (0.74, 0.04, 0.07, 0.05, 0.1))
         else:
             hands = [(0.8, american(folder, "train")), (0.2, semeion(folder))]
             careful = Careful(pen, hands, pens=float(name == "pens"))
@@ -145,12 +144,8 @@ def drawn(job: tuple[str, int, Path, Path]) -> tuple[np.ndarray, np.ndarray]:
         others = APART_HANDS["coarse"](folder)
         make = lambda: scanner.digit(*one_of(pen, others))  # noqa: E731
     if name in ("scanned", "scanned_apart"):
-        hands = (
-            [hand for _, hand in other_hands(folder)[:2]]
-            if name == "scanned"
-            else [paths(folder, "tes", odd=True)]
-        )
-        make = lambda: scanner.digit(*one_of(pen, hands[rng.integers(len(hands))]))  # noqa: E731
+        strokes = paths(folder, "tra") if name == "scanned" else paths(folder, "tes", odd=True)
+        make = lambda: scanner.digit(*one_of(pen, strokes))  # noqa: E731
     if name == "negatives":
         pen.letter = FontLetters(pen)
     samples = [make() for _ in range(CHUNK)]
@@ -241,7 +236,7 @@ def european(scanner: Scanner) -> tuple[np.ndarray, int]:
 
 
 #: Sets that train, and their shares of a batch.
-SHARES = {"careful": 0.26, "pens": 0.12, "train": 0.22, "hands": 0.3, "scanned": 0.1}
+SHARES = {"careful": 0.3, "pens": 0.15, "train": 0.25, "hands": 0.22, "scanned": 0.08}
 SETS = {
     "pages": 15,
     "check": 12,
@@ -275,18 +270,6 @@ def draw(options: argparse.Namespace) -> None:
         for job, (seen, labels) in zip(wanted, pool.map(drawn, wanted), strict=True):
             np.savez(_file(options, job), seen=seen, labels=labels)
             print(job[0], job[1], flush=True)
-
-
-def clean(options: argparse.Namespace) -> None:
-    """Leave out the digits of other hands to whose labels the net of the package gives hardly a chance: most
-    of these labels are wrong, and would teach doubt."""
-    for path in sorted([*options.work.glob("hands_[0-9]*.npz"), *options.work.glob("scanned_[0-9]*.npz")]):
-        with np.load(path) as chunk:
-            seen, labels = chunk["seen"], chunk["labels"]
-        chances = net.probabilities(_features(seen))[np.arange(len(labels)), labels]
-        kept = (chances >= 0.05) | (labels >= BLANK)
-        np.savez(path, seen=seen[kept], labels=labels[kept])
-        print(path.name, len(labels) - kept.sum(), flush=True)
 
 
 def _file(options: argparse.Namespace, job: tuple) -> Path:
@@ -557,10 +540,11 @@ def settle(options: argparse.Namespace) -> None:
     torch.save(net.state_dict(), kept)
 
 
-def export(trained, temperature: float, average: np.ndarray, own: float) -> None:
+def export(trained, temperature: float, average: np.ndarray, own: float, struck: float) -> None:
     """The net as plain arrays of half precision, each batch normalisation put into its convolution; the
-    ``average`` unit features of each digit, and the weight of a person's ``own`` digits."""
-    arrays = {"temperature": np.float32(temperature), "average": average, "own": np.float32(own)}
+    ``average`` unit features of each digit, the weight of a person's ``own`` digits, and what ``struck``-out
+    ones gain by them."""
+    arrays = {"temperature": temperature, "average": average, "own": own, "struck": struck}
     for name, (convolution, normal) in trained.convolutions.items():
         scale = (normal.weight / (normal.running_var + normal.eps).sqrt()).detach()
         weight = convolution.weight.detach() * scale[:, None, None, None]
@@ -582,12 +566,13 @@ def calibrate(options: argparse.Namespace) -> None:
 
     trained = network()
     trained.load_state_dict(torch.load(options.work / "net.pt"))
-    export(trained, 1.0, np.zeros((10, trained.full["classes"].in_features)), 0.0)
+    nothing = np.zeros((10, trained.full["classes"].in_features)), 0.0, 0.0
+    export(trained, 1.0, *nothing)
     seen, labels = (array[::4] for array in stored(options, "check"))
     logs = np.log(net.probabilities(_features(seen)) + 1e-300)
     temperature = likeliest(lambda its: _unlikely(logs / its, labels), (0.2, 5))
     average = _average(options)
-    export(trained, temperature, average, 0.0)
+    export(trained, temperature, average, 0.0, 0.0)
     pages = by_page(options, "hand")
 
     def unlikely(own: float) -> float:
@@ -596,8 +581,22 @@ def calibrate(options: argparse.Namespace) -> None:
         return _unlikely(logs, np.concatenate([labels for _, labels in pages]))
 
     own = likeliest(unlikely, (0, 60))
-    export(trained, temperature, average, own)
-    print("temperature", temperature, "weight of own digits", own)
+    net._weights()["own"] = np.float32(own)
+    struck = gain_of_struck(options)
+    export(trained, temperature, average, own, struck)
+    print("temperature", temperature, "weight of own digits", own, "gain of struck ones", struck)
+
+
+def gain_of_struck(options: argparse.Namespace) -> float:
+    """The mean logarithm of the factor by which struck-out boxes become likelier to be some digit."""
+    gains = []
+    for hidden, labels in by_page(options, "hand", struck=5):
+        odds = [
+            chances[labels == STRUCK, :BLANK].sum(axis=1) / chances[labels == STRUCK, BLANK:].sum(axis=1)
+            for chances in (net.probabilities(hidden), net.of_one_hand(hidden))
+        ]
+        gains.append(np.log(odds[1] / odds[0]))
+    return float(np.concatenate(gains).mean())
 
 
 def likeliest(cost, bounds: tuple[float, float]) -> float:
@@ -624,13 +623,27 @@ def _average(options: argparse.Namespace) -> np.ndarray:
     return np.array([units[labels == digit].mean(axis=0) for digit in range(10)])
 
 
-def by_page(options: argparse.Namespace, name: str) -> list[tuple[np.ndarray, np.ndarray]]:
-    """Features and labels of the boxes of a set's writers, page by page."""
-    pages = []
+def by_page(options: argparse.Namespace, name: str, struck: int = 0) -> list[tuple[np.ndarray, np.ndarray]]:
+    """Features and labels of the boxes of a set's writers, page by page; among them some of their digits
+    again, struck out."""
+    rng, pages = np.random.default_rng(3), []
     for seen, labels in _chunks(options, name):
-        count = max(1, round(len(labels) / PAGE))
-        pages += zip(np.array_split(_features(seen), count), np.array_split(labels, count), strict=True)
+        for page in np.array_split(rng.permutation(len(labels)), max(1, round(len(labels) / PAGE))):
+            digits = rng.choice(page[labels[page] < BLANK], struck, replace=False)
+            boxes = [*seen[page], *(struck_out(seen[k], rng) for k in digits)]
+            pages.append((_features(np.array(boxes)), np.append(labels[page], np.full(struck, STRUCK))))
     return pages
+
+
+def struck_out(box: np.ndarray, rng: np.random.Generator) -> np.ndarray:
+    """A prepared box with one to three lines across it."""
+    box = box.copy()
+    for _ in range(rng.integers(1, 4)):
+        left, right, middle = rng.uniform(3, 8), rng.uniform(24, 29), rng.uniform(12, 28)
+        tilt = rng.normal(0, 3)
+        ends = ((round(left), round(middle - tilt)), (round(right), round(middle + tilt)))
+        cv2.line(box, *ends, int(rng.uniform(180, 255)), 2, cv2.LINE_AA)
+    return box
 
 
 # ------------------------------------------------------------------- the proof
@@ -640,7 +653,8 @@ def report(options: argparse.Namespace) -> None:
     with ProcessPoolExecutor(options.processes) as pool:
         found = dict(zip(SETS, pool.map(_chances, SETS, [options] * len(SETS)), strict=True))
     for name in ("check", "turkish_hand", "french_hand"):
-        limits(name, *found[name])
+        chances, labels = found[name]
+        limits(name, chances[labels != STRUCK], labels[labels != STRUCK])
     print("| set | boxes | error, no limit | wrong above the limit | told unsure |\n|---|--:|--:|--:|--:|")
     for name, (chances, labels) in found.items():
         print("|", name, "|", " | ".join(_row(chances, labels)), "|")
@@ -650,7 +664,7 @@ def _chances(name: str, options: argparse.Namespace) -> tuple[np.ndarray, np.nda
     if name not in ONE_HAND:
         seen, labels = stored(options, name)
         return net.probabilities(_features(seen)), labels
-    pages = by_page(options, name)
+    pages = by_page(options, name, struck=5)
     chances = [net.of_one_hand(hidden) for hidden, _ in pages]
     return np.concatenate(chances), np.concatenate([labels for _, labels in pages])
 
@@ -659,7 +673,14 @@ def _row(chances: np.ndarray, labels: np.ndarray) -> list[str]:
     taken, sure = _read(chances)
     wrong, held = taken != labels, sure >= CONFIDENT
     plain = np.mean(chances.argmax(1) != labels)
-    return [f"{len(labels)}", f"{plain:.2%}", f"{np.sum(wrong & held)}", f"{np.mean(~held):.1%}"]
+    clean = labels <= BLANK if (labels <= BLANK).any() else labels > BLANK
+    return [
+        f"{np.sum(labels != STRUCK)}",
+        f"{plain:.2%}",
+        f"{np.sum(wrong & held & (labels != STRUCK))}",
+        f"{np.mean(~held[clean]):.1%}",
+        f"{np.sum(held & (labels == STRUCK))} of {np.sum(labels == STRUCK)}",
+    ]
 
 
 def _read(chances: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -721,7 +742,7 @@ if __name__ == "__main__":
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
-    parser.add_argument("step", choices=["draw", "clean", "train", "settle", "calibrate", "report", "bank"])
+    parser.add_argument("step", choices=["draw", "train", "settle", "calibrate", "report", "bank"])
     parser.add_argument("--data", type=Path, required=True)
     parser.add_argument("--work", type=Path, required=True)
     parser.add_argument("--careful", type=int, default=100, help="chunks of five thousand careful boxes")

@@ -7,11 +7,9 @@
   Turkey and 13 others.
 - ``pendigits-orig.tra`` and ``.tes``: UCI's "Pen-Based Recognition of Handwritten Digits", by 30 writers in
   Turkey and 14 others.
-- ``unipen/``: the folders ``data/1a`` and ``include`` of UNIPEN's "train_r01_v07": isolated digits from 15
-  institutions in the United States, Germany, Spain, Britain and Canada.
 - ``inkml/``: formulas of the competitions CROHME; those of HAMEX are by 39 writers in France.
 
-Pictures are white on black. The last three are paths of pens on tablets, which are drawn with any pen.
+Pictures are white on black. The last two are paths of pens on tablets, which are drawn with any pen.
 """
 
 from __future__ import annotations
@@ -109,45 +107,6 @@ def paths(folder: Path, part: str, *, odd: bool | None = None) -> Digits:
 def _digits(found: Sequence[tuple[Paths, int, int | str]]) -> Digits:
     pictures, labels, writers = zip(*found, strict=True)
     return Digits(pictures, np.array(labels), np.array(writers))
-
-
-_DOWN = re.compile(r"^\.PEN_DOWN", re.MULTILINE)
-
-
-def unipen(folder: Path) -> Digits:
-    """Return UNIPEN's isolated digits as paths: files that name strokes of other files by their numbers."""
-    found: list[tuple[int, Paths]] = []
-    for path in sorted((folder / "unipen" / "data" / "1a").rglob("*.dat")):
-        if "tos" in path.parts:  # its numbers do not match its strokes
-            continue
-        text = path.read_text("latin-1")
-        included = re.findall(r"^\.INCLUDE\s+(\S+)", text, re.MULTILINE)
-        down = [
-            stroke
-            for name in included
-            for stroke in _DOWN.split((folder / "unipen" / "include" / name).read_text("latin-1"))[1:]
-        ]
-        for places, label in re.findall(
-            r'^\.SEGMENT CHARACTER\s+([\d,-]+)\s+\S+\s+"(\d)"', text, re.MULTILINE
-        ):
-            strokes = [_points(down[k]) for k in _numbers(places) if k < len(down)]
-            if strokes and sum(map(len, strokes)) > 3:
-                found.append((int(label), [each for each in strokes if len(each)]))
-    return Digits([each for _, each in found], np.array([label for label, _ in found]))
-
-
-def _numbers(text: str) -> Iterator[int]:
-    """Yield the numbers of a list such as ``3,5-7``."""
-    for piece in filter(None, text.split(",")):
-        first, _, last = piece.partition("-")
-        yield from range(int(first), int(last or first) + 1)
-
-
-def _points(text: str) -> np.ndarray:
-    """Return the points that begin a text of UNIPEN, up to its next keyword."""
-    rows = [line.split() for line in text.partition("\n.")[0].splitlines()]
-    points = [(float(row[0]), -float(row[1])) for row in rows if len(row) >= 2]
-    return np.array(points).reshape(-1, 2)
 
 
 _INK = "{http://www.w3.org/2003/InkML}"

@@ -85,14 +85,12 @@ def probabilities(hidden: Floats) -> NDArray[np.float64]:
 def of_one_hand(hidden: Floats) -> NDArray[np.float64]:
     """Return calibrated probabilities of the classes, shape (n, 13), for features of boxes of one person.
 
-    The person's other boxes tell which digit a box shows, and not whether it shows one: the ten digits
-    together are as likely as without them.
+    A digit gains by similar boxes of the same person, less what a struck-out digit gains on average.
     """
-    chances = probabilities(hidden)
+    w, chances = _weights(), probabilities(hidden)
     digits = chances[:, :BLANK]
-    favoured = digits * np.exp(_weights()["own"] * similarity(hidden, digits))
-    chances[:, :BLANK] = favoured * (digits.sum(axis=1) / favoured.sum(axis=1))[:, None]
-    return chances
+    chances[:, :BLANK] = digits * np.exp(w["own"] * similarity(hidden, digits) - w["struck"])
+    return chances / chances.sum(axis=1, keepdims=True)
 
 
 def similarity(hidden: Floats, chances: NDArray[np.float64]) -> NDArray[np.float64]:
