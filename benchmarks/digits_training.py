@@ -655,7 +655,8 @@ def report(options: argparse.Namespace) -> None:
     for name in ("check", "turkish_hand", "french_hand"):
         chances, labels = found[name]
         limits(name, chances[labels != STRUCK], labels[labels != STRUCK])
-    print("| set | boxes | error, no limit | wrong above the limit | told unsure |\n|---|--:|--:|--:|--:|")
+    print("| set | boxes | error, no limit | wrong above the limit | told unsure | struck-out taken |")
+    print("|---|--:|--:|--:|--:|--:|")
     for name, (chances, labels) in found.items():
         print("|", name, "|", " | ".join(_row(chances, labels)), "|")
 
@@ -671,15 +672,14 @@ def _chances(name: str, options: argparse.Namespace) -> tuple[np.ndarray, np.nda
 
 def _row(chances: np.ndarray, labels: np.ndarray) -> list[str]:
     taken, sure = _read(chances)
-    wrong, held = taken != labels, sure >= CONFIDENT
-    plain = np.mean(chances.argmax(1) != labels)
-    clean = labels <= BLANK if (labels <= BLANK).any() else labels > BLANK
+    held, struck = sure >= CONFIDENT, labels == STRUCK
+    clean = labels <= BLANK if (labels <= BLANK).any() else ~struck
     return [
-        f"{np.sum(labels != STRUCK)}",
-        f"{plain:.2%}",
-        f"{np.sum(wrong & held & (labels != STRUCK))}",
+        f"{np.sum(~struck)}",
+        f"{np.mean((chances.argmax(1) != labels)[~struck]):.2%}",
+        f"{np.sum((taken != labels) & held & ~struck)}",
         f"{np.mean(~held[clean]):.1%}",
-        f"{np.sum(held & (labels == STRUCK))} of {np.sum(labels == STRUCK)}",
+        f"{np.sum(held & struck)} of {np.sum(struck)}",
     ]
 
 
