@@ -39,6 +39,7 @@ from coursework.gradebook.statistics.alike import alike_lines
 from coursework.gradebook.statistics.measures import ENOUGH, WEAK, PartStatistics, measure
 from coursework.gradebook.statistics.of_class import marks_of_class
 from coursework.gradebook.waiting import (
+    SCANNED,
     SHOWN_ON_REQUEST,
     AnswerGroup,
     AnswerToReview,
@@ -60,7 +61,6 @@ from coursework.issuing.variant_assignment import with_points
 from coursework.language.words import languages, words
 from coursework.marking.mark import WAITING, Mark
 from coursework.messages import Message
-from coursework.parsing.scanned import names_pictures
 from coursework.parsing.spoken import refers_elsewhere, says_nothing
 from coursework.quantities.error_kinds import PENALTIES
 
@@ -376,10 +376,6 @@ class Exam:
         asked = self.course[exercise].spec.part(part)
         return asked is not None and asked.sort.is_number
 
-    def _is_open(self, exercise: str, part: str) -> bool:
-        asked = self.course[exercise].spec.part(part)
-        return asked is not None and asked.sort.is_open
-
     def count_of(self, wanted: Decision) -> int:
         """Return the number of answers to the question of a step that are written as it says."""
         lines = (g.lines.get(wanted.part) for g in self.machine if g.exercise == wanted.exercise)
@@ -402,7 +398,7 @@ class Exam:
             for group, members in self.open
             for one in members
             if (group.exercise, group.part) in questions and one.mark.verdict in WAITING
-            if self._is_open(group.exercise, group.part) or not names_pictures(one.mark.answer)
+            if group.why != SCANNED
         )
         return as_one(step(GIVEN, exercise, part, 0.0, answer) for exercise, part, answer in answers)
 

@@ -1,8 +1,8 @@
 """Answers that only a person can judge, grouped by equal content.
 
-An answer waits if it is unreadable, is to be marked by a person, lacks its unit, is wrong by little, or is a
-wrong answer that many students gave and nothing explains. An answer that is right by little does not wait,
-and is shown on request.
+An answer waits if it is unreadable, is the picture of a scan, is to be marked by a person, lacks its unit, is
+wrong by little, or is a wrong answer that many students gave and nothing explains. An answer that is right by
+little does not wait, and is shown on request.
 """
 
 from __future__ import annotations
@@ -24,6 +24,7 @@ from coursework.issuing.issued import Issued
 from coursework.issuing.questions import PaperQuestions, Question
 from coursework.marking.margins import half_widths_off
 from coursework.marking.mark import Mark
+from coursework.parsing.scanned import names_pictures
 from coursework.parsing.spelling import plain_spelling, unwrapped
 
 NEAR = 2.0  #: accepted margins up to which a wrong answer is near the margin
@@ -34,8 +35,9 @@ LONGEST = 2000  #: characters by which texts are compared
 
 SheetOfStudent = tuple[str, str, int, int]  #: student, exercise, seed and sitting
 
+SCANNED = "scanned"  #: the picture of an answer, which is marked once somebody has typed it
 #: Why an answer may be looked at, in the order in which they are shown.
-WHY = ("unreadable", "drawn", "open", "unit", "near", "often", "just")
+WHY = ("unreadable", SCANNED, "drawn", "open", "unit", "near", "often", "just")
 SHOWN_ON_REQUEST = ("just",)  #: these need no review
 
 
@@ -143,7 +145,7 @@ def groups(
 ) -> list[AnswerGroup]:
     """Return the answers that may be reviewed, question by question, then by reason, the largest groups
     first."""
-    drawn = _drawn(course, questions)
+    by_person = _by_person(course, questions)
     members_by_key: dict[tuple[str, ...], list[AnswerToReview]] = {}
     answered: dict[tuple[str, str], set[str]] = {}
     for graded_sheet in graded:
@@ -152,7 +154,7 @@ def groups(
             if mark.verdict == "missing":
                 continue
             answered.setdefault((graded_sheet.exercise, part), set()).add(graded_sheet.student)
-            if (key := key_of(graded_sheet, mark, measure, drawn)) is not None:
+            if (key := key_of(graded_sheet, mark, measure, by_person)) is not None:
                 members_by_key.setdefault(key, []).append(
                     AnswerToReview(graded_sheet, mark, measure.margins.get(part))
                 )
@@ -170,14 +172,18 @@ def groups(
     )
 
 
-def _drawn(course: Course, questions: PaperQuestions) -> frozenset[Question]:
-    """Return the questions that are answered by a drawing."""
+def _by_person(course: Course, questions: PaperQuestions) -> dict[Question, str]:
+    """Return the reason of a review of the questions that a person marks: a drawing, or a text."""
     parts = {
         question: course[question[0]].spec.part(question[1])
         for question in questions
         if question[0] in course
     }
-    return frozenset(q for q, part in parts.items() if part and part.sort.box in ("blank", "millimetre"))
+    return {
+        question: "drawn" if part.sort.box in ("blank", "millimetre") else "open"
+        for question, part in parts.items()
+        if part and part.sort.is_open
+    }
 
 
 def undecided(
@@ -216,19 +222,19 @@ def _is_made_good(answer: AnswerToReview, now: Graded) -> bool:
 
 
 def key_of(
-    graded: Graded, mark: Mark, measure: Measure, drawn: frozenset[Question]
+    graded: Graded, mark: Mark, measure: Measure, by_person: Mapping[Question, str]
 ) -> tuple[str, ...] | None:
     """Return the common values of the answers of one group, beginning with the reason for a review; None for
     an answer that nobody reviews."""
     margin = measure.margins.get(mark.part)
-    if (why := _why(mark, margin, is_drawn=(graded.exercise, mark.part) in drawn)) is None:
+    if (why := _why(mark, margin, by_person.get((graded.exercise, mark.part), ""))) is None:
         return None
     return why, graded.exercise, mark.part, mark.verdict, written(mark), measure.references.get(mark.part, "")
 
 
-def _why(mark: Mark, margin: float | None, *, is_drawn: bool) -> str | None:
+def _why(mark: Mark, margin: float | None, by_person: str) -> str | None:
     if mark.verdict == "to_mark":
-        return "drawn" if is_drawn else "open"
+        return by_person or (SCANNED if names_pictures(mark.answer) else "open")
     if mark.verdict == "unreadable":
         return "unreadable"
     if mark.verdict == "missing_unit":
