@@ -257,6 +257,11 @@ def _print_gradebook(book: Gradebook, out: Path) -> int:
             count=book.waiting,
             file=out / "decisions.csv",
         )
+    if book.on_scans:
+        say(
+            "{count} of them {count:is|are} on scans: type those that the page of the queue shows",
+            count=book.on_scans,
+        )
     if book.changes:
         say("{count} mark{count:|s} changed; see {file}", count=book.changes, file=out / "changes.csv")
     _print_warnings(book)

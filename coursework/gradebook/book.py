@@ -110,6 +110,7 @@ class Gradebook:
     #: Parts by sheet; see ``unread``.
     blank: dict[tuple[Sitting, str], set[str]] = field(default_factory=dict)
     waiting: int = 0  #: answers that wait to be marked by a person
+    on_scans: int = 0  #: of these, pictures of scans
     changes: int = 0  #: marks that differ from those that were there before
     #: Parts that a platform asked apart, by exercise.
     apart: dict[str, set[str]] = field(default_factory=dict)

@@ -40,6 +40,7 @@ from coursework.issuing.students import folded
 from coursework.language.numbers import typed_number
 from coursework.marking.mark import Mark
 from coursework.messages import Message, as_message
+from coursework.parsing.scanned import names_pictures
 from coursework.system.limits import MOST_TABLE_BYTES
 
 DECISIONS_FILE = "decisions.csv"
@@ -230,6 +231,7 @@ class DecisionFiles:
         self.decisions = Decisions(self.lines)
         self.is_edited = any(decision.kind == EDITED for decision in self._own)
         self.waiting = 0
+        self.on_scans = 0  #: of these, pictures
         self.changed: list[str] = []  #: given points whose answers are not those that were marked
         self._rows: list[dict[str, Any]] = []  #: answers that a person marks
         self._ids = {one.id for one in self._own if one.id}
@@ -283,6 +285,7 @@ class DecisionFiles:
         counting = list(decisions.counting(graded[:3], mark))
         given = next((decision for decision in counting if decision.kind == GIVEN), None)
         self.waiting += not counting
+        self.on_scans += not counting and names_pictures(mark.answer)
         self._listed.update(
             decision
             for decision in self.decisions.on(graded.student, graded.exercise, mark.part)

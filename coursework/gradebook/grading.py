@@ -172,7 +172,7 @@ def write_marks(
             book.changes += 1
         book.faults, notes = files.unfollowed(issued, dict.fromkeys(s for s, _ in book.students))
         book.warnings += notes
-        book.waiting = files.waiting
+        book.waiting, book.on_scans = files.waiting, files.on_scans
         _write_decisions(files, tables, book)
         _write_counts(book, tables, rejected, history if before.exists else None)
         stood = files.is_edited or (out / EDITED_FILE).exists()

@@ -93,7 +93,7 @@ def test_refusing_all_that_waits_in_a_question_does_not_refuse_what_nobody_has_r
         writer.writerows(rows)
     issued = ["--issued", str(out / "issued.json")]
     assert run(["grade", str(out / "answers.csv"), *issued, "--no-feedback"]) == 1
-    capsys.readouterr()
+    assert "1 of them is on scans" in capsys.readouterr().out
     assert run(["after", str(exam), *issued]) == 1
     told = capsys.readouterr().out
     assert "On scans, to type (cards: 1, answers: 1)" in told
