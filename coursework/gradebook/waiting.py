@@ -174,15 +174,11 @@ def groups(
 
 def _by_person(course: Course, questions: PaperQuestions) -> dict[Question, str]:
     """Return the reason of a review of the questions that a person marks: a drawing, or a text."""
-    parts = {
-        question: course[question[0]].spec.part(question[1])
-        for question in questions
-        if question[0] in course
-    }
     return {
-        question: "drawn" if part.sort.box in ("blank", "millimetre") else "open"
-        for question, part in parts.items()
-        if part and part.sort.is_open
+        (exercise, name): "drawn" if part.sort.box in ("blank", "millimetre") else "open"
+        for exercise, name in questions
+        if exercise in course
+        if (part := course[exercise].spec.part(name)) and part.sort.is_open
     }
 
 

@@ -177,7 +177,7 @@ WRITERS = [np.flatnonzero(BANK["pen_writers"] == writer) for writer in np.unique
 
 
 def pages_taken(pages):
-    """How many boxes of some pages of digits by pens are taken; none of them wrongly."""
+    """Count the boxes of some pages of digits by pens that are taken; check that none is wrong."""
     count = 0
     for page in pages:
         found, sure, _ = read_digits(np.array([inked(box(), written(index, bank="pens")) for index in page]))
